@@ -53,7 +53,7 @@ TEST(Text, of_a_pipe_without_a_writer_is_waited_for_until_the_caller_cancels) {
     ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
     int calls = 0;
     EXPECT_THROW((void)read_text(folder / "pipe",
-                                 [&] {
+                                 [&](double) {
                                      if (++calls == 3) throw Cancelled();
                                  }),
                  Cancelled);

@@ -41,7 +41,7 @@ struct Hovering {
 TEST(RestingBrush, edits_nothing_when_a_change_makes_a_hand_touch_that_stands_still) {
     const std::vector<std::function<void(Hovering&)>> changes{
         [](Hovering& h) { h.live.send(command::Isovalue{h.here() - 3}); },
-        [](Hovering& h) { h.live.use_field(Solid::below, Interpolation::smooth, {}); },
+        [](Hovering& h) { h.live.use_field(Solid::below, Interpolation::cubic, {}); },
         [](Hovering& h) { h.live.send(command::UseLayers{one_level(h.here() - 3)}); },
         [](Hovering& h) {
             h.live.send(command::UseTool{std::make_shared<const Tool>(sphere_tool(6, 2))});

@@ -206,7 +206,7 @@ TEST(BrickLoader, an_edit_across_bricks_reads_what_is_in_memory_from_there) {
     loader.wait_for({64, 64, 64}, 5);
     const std::uint64_t before = loader.status().traffic.requests;
     const SampleBox box{{60, 50, 58}, {70, 66, 74}};
-    std::vector<std::byte> samples(bytes_of(box, SampleType::uint8));
+    std::vector<std::byte> samples(palpate::stream::bytes_of(box, SampleType::uint8));
     loader.read(box, samples);
     EXPECT_EQ(loader.status().traffic.requests, before);
     std::size_t at = 0;
