@@ -224,7 +224,7 @@ TEST_F(LayersPart, closing_and_the_numbers_of_a_needle_can_be_set) {
     EXPECT_EQ(asked()->needle->static_ratio, 1.5);
     EXPECT_EQ(asked()->needle->stick_speed, 3);
     type("needle_static_ratio_box", "0.5");
-    EXPECT_TRUE(message("layers_part").contains("static friction"));
+    EXPECT_TRUE(message("layers_part").contains("static ratio of the needle"));
     EXPECT_EQ(effect.settings().layers->needle->static_ratio, 1.5);
     EXPECT_EQ(find<NumberBox>("needle_static_ratio_box")->value(), 1.5);
     tick("needle");
