@@ -226,7 +226,7 @@ def test_a_device_that_tells_only_once_it_is_connected_that_it_is_too_weak_ends_
     assert ask(trials.Trial(0, 1.0, 0.4, 0.2)) == 1
     monkeypatch.setattr(palpate, "Run", Weak)
     with pytest.raises(ValueError, match="0.4: the device renders only 0.1 stably"):
-        ask(trials.Trial(0, 1.0, 0.4, 0.2))
+        ask(trials.Trial(1, 1.0, 0.4, 0.2))
 
 
 def test_a_person_at_the_keys_touches_answers_and_is_analysed(tmp_path):
