@@ -178,7 +178,7 @@ TEST(write_volume, never_replaces_the_samples_of_another_volume) {
     EXPECT_TRUE(same_samples(read_volume(folder / "a.mhd").volume, other));
 }
 
-class TwoFiles : public testing::TestWithParam<std::tuple<const char*, bool>> {
+class TwoFiles : public testing::TestWithParam<std::tuple<std::string, bool>> {
   protected:
     void write(const Volume& volume, const std::string& name) const {
         WriteOptions options;
@@ -229,8 +229,9 @@ TEST_P(TwoFiles, never_replace_samples_that_a_header_of_the_other_format_names) 
     write(volume, "a" + header);
 }
 
-INSTANTIATE_TEST_SUITE_P(each, TwoFiles,
-                         testing::Combine(testing::Values(".nhdr", ".mhd"), testing::Bool()));
+INSTANTIATE_TEST_SUITE_P(
+    each, TwoFiles,
+    testing::Combine(testing::Values(std::string(".nhdr"), std::string(".mhd")), testing::Bool()));
 
 TEST(write_volume, says_so_if_the_folder_is_missing_or_the_name_is_a_folder) {
     const ScratchFolder folder;
