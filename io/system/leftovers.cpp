@@ -92,7 +92,8 @@ void remove_one(const fs::path& path, ino_t inode) {
     if (::fstat(descriptor, &about) == 0 && about.st_uid == ::geteuid() &&
         ::flock(descriptor, LOCK_EX | LOCK_NB) == 0) {
         const bool is_signed = about.st_ino == inode;
-        if ((S_ISREG(about.st_mode) && is_signed) ||
+        const bool is_unused = inode == 0 && about.st_size == 0;  // killed before it was signed
+        if ((S_ISREG(about.st_mode) && (is_signed || is_unused)) ||
             (S_ISDIR(about.st_mode) && is_marked(descriptor))) {
             remove_tree(path);
         } else if (S_ISDIR(about.st_mode) && is_signed) {

@@ -171,6 +171,15 @@ TEST(Leftovers, files_and_folders_that_palpate_did_not_make_stay_whatever_their_
     EXPECT_EQ(bytes_of(folder / (dead + "-6.part/result/0/c/0/0/0")), "precious");
 }
 
+TEST(Leftovers, a_file_that_was_killed_before_it_was_signed_is_removed_because_it_is_empty) {
+    const ScratchFolder folder;
+    put_bytes(folder / (".palpate-" + dead_process() + "-0.part"), "");
+    put_bytes(folder / (".palpate-" + dead_process() + "-0.part"), "x");
+    write_in_another_process(folder);
+    EXPECT_EQ(folder.names().size(), 1U);
+    EXPECT_EQ(bytes_of(folder / folder.names().front()), "x");
+}
+
 TEST(Leftovers, a_process_looks_for_leftovers_once_in_a_folder) {
     const ScratchFolder folder;
     const std::string name = ".palpate-" + dead_process() + "-0.part";
