@@ -23,14 +23,14 @@ constexpr std::size_t most_candidates = 20'000'000;
 /// Triangles or candidates that take milliseconds.
 constexpr std::size_t items_in_slice = 4096;
 
-[[noreturn]] void refuse_number() {
+[[noreturn]] void refuse_count() {
     throw std::invalid_argument("a tool has at most " + std::to_string(most_tool_points) +
                                 " points: space them farther apart, or simplify the mesh");
 }
 
 /// Places a point may be put. Too many are refused.
 void add(std::vector<Vec3>& candidates, const Vec3& place) {
-    if (candidates.size() == most_candidates) refuse_number();
+    if (candidates.size() == most_candidates) refuse_count();
     candidates.push_back(place);
 }
 
@@ -53,7 +53,7 @@ class SpreadPoints {
     }
 
     void add(const Vec3& point) {
-        if (points_.size() == most_tool_points) refuse_number();
+        if (points_.size() == most_tool_points) refuse_count();
         points_.push_back(point);
         cells_[cell_of(point)].push_back(point);
     }
@@ -160,7 +160,7 @@ std::vector<Vec3> along(std::span<const Vec3> vertices, std::span<const MeshEdge
     for (const auto& [a, b] : edges) {
         const Vec3 way = vertices[b] - vertices[a];
         const double steps = std::ceil(way.norm() / step);
-        if (steps > double(most_candidates)) refuse_number();
+        if (steps > double(most_candidates)) refuse_count();
         const int count = static_cast<int>(steps);
         for (int i = 0; i <= count; ++i) add(places, vertices[a] + way * (double(i) / steps));
     }
@@ -207,7 +207,7 @@ Tool mesh_tool(ToolShape mesh, double spacing, const OnProgress& progress) {
     for (const MeshTriangle& t : triangles) area += area_vector(vertices, t).norm();
     // The closest packing that leaves no place farther than the spacing from a point.
     if (!(area < 1.5 * std::sqrt(3.0) * spacing * spacing * double(most_tool_points))) {
-        refuse_number();
+        refuse_count();
     }
     const double step = candidate_step * spacing, distance = distance_of_points * spacing;
     const std::vector<MeshEdge> edges = sharp_edges(vertices, triangles, work);
