@@ -222,7 +222,7 @@ function withAxes(image, notes) {
 
 /** A scale, and a translation after it. Version 0.6 puts both into a sequence. */
 function transformed({ coordinateTransformations: given = [] }, count) {
-  const list = given.length === 1 && given[0].type === "sequence" ? given[0].transformations : given;
+  const list = given?.[0]?.type === "sequence" && given.length === 1 ? given[0].transformations : given;
   if (!Array.isArray(list)) refuse("the transformations of this OME-Zarr are no list");
   const steps = list.filter(({ type }) => type !== "identity");
   const kinds = steps.map(({ type }) => type).join();
