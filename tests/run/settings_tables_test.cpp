@@ -86,7 +86,7 @@ TEST(SettingsTables, a_number_out_of_its_range_is_refused_by_whoever_takes_the_s
     const Field field = linear_field(test::loaded("synthetic:sphere:12x12x12").volume);
     for (const BrushKind kind : {BrushKind::carve, BrushKind::add, BrushKind::smooth}) {
         expect_refused(brush_for(kind, field, 100, 2), [&](const Brush& brush) {
-            check(edit::Stroke{brush, {}, {}}, field.samples());
+            check(edit::Stroke{brush, Vec3::Zero(), Vec3::Zero()}, field.samples());
         });
     }
     expect_refused(HandBrush{.value = 3}, [](const HandBrush& brush) { check(brush); });
