@@ -375,7 +375,8 @@ void Servo::count(std::int64_t number, const Stamps& stamps, std::int64_t end) n
         schedule_.worst = tick;
         worst_.put(tick);
     }
-    // A tick that ends after the next one was due has missed it; missed ticks are not made up.
+    // A tick that ends after the next one was due has missed that deadline. Of the ticks that came
+    // due meanwhile, only the last one is made up.
     const std::int64_t late = (end - schedule_.due) / schedule_.period;
     add(missed_, late);
     schedule_.due += schedule_.period * std::max<std::int64_t>(1, late);

@@ -171,7 +171,7 @@ void add_side_options(CLI::App& command, run::FieldSetup& field) {
             [&field](const std::string& text) { field.interpolation = interpolation_from(text); },
             "Interpolation between samples: cubic (smooth) or linear (with facets, the paper's)")
         ->check(one_of({"cubic", "linear"}))
-        ->default_str("cubic; linear for the methods paper and gradient");
+        ->default_str("cubic; linear for paper, gradient and gradient-improved");
     command.add_option_function<std::string>(
         "--background",
         [&field](const std::string& text) { field.background = io::level_from_text(text); },

@@ -78,8 +78,7 @@ void add_extract(CLI::App& app) {
         ->required();
     command
         ->add_option("--tolerance", options->tolerance,
-                     "Split facets of the smooth surface until they are this close to it [voxel]. "
-                     "0 splits none")
+                     "Split facets of the smooth surface until they are this close to it [voxel]")
         ->check(from_to(1e-6, 1.0));
     command->add_flag("--json", options->json, "Print the summary as JSON");
     command->callback([options, command] { extract(*command, *options); });

@@ -311,7 +311,8 @@ void add_session(CLI::App& app, const char* name, const char* what, bool is_reco
     auto options = std::make_shared<TouchOptions>();
     CLI::App* command = app.add_subcommand(name, what);
     command->footer(fmt::format(
-        "Without --device a simulated hand explores the volume. Forces begin at zero once the "
+        "If there is a display, the viewer opens and the mouse is the hand. Without a window, a "
+        "simulated hand explores the volume. Forces begin at zero once the "
         "computed force is small.\nThey end at zero, however the session ends. On a terminal, keys "
         "work while it runs (? lists them).\n\nExample:\n  {}",
         example));

@@ -53,7 +53,7 @@ struct BricksOf {
     std::uint64_t version = 0;  ///< of the samples before
     struct Brick {
         Index3 at;
-        int level = 0;  ///< of detail, see Brick; -1: it went
+        int level = 0;  ///< of detail, see Brick; -1: removed
     };
     std::vector<Brick> bricks;
 };

@@ -20,8 +20,9 @@ MeshFormat mesh_format_from(const std::filesystem::path& path);
 bool names_a_mesh(const std::filesystem::path& path);
 
 /// The triangles of a mesh file, closed or not. Polygons are cut into triangles, vertices are
-/// unchanged and taken as mm, and normals are ignored. Read by VTK in a process of its own
-/// (docs/io.md). Throws InputError, and passes on exceptions of `progress`.
+/// unchanged and taken as mm, and normals are ignored. Read in a process of its own, VTP
+/// by VTK, the others by parsers of ours (docs/io_internals.md). Throws InputError, and passes on
+/// exceptions of `progress`.
 SurfaceMesh read_mesh(const std::filesystem::path& path, const OnProgress& progress = {});
 
 /// Writes the mesh in the format of the path's extension, whole or not at all (PendingFile).

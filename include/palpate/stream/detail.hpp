@@ -35,7 +35,7 @@ struct Detail {
 
 struct DetailSettings {
     std::uint64_t memory = std::uint64_t{1} << 27;  ///< [bytes] most that decoded pieces take
-    int threads = 12;  ///< that read at a time: half of them for eyes, six at most
+    int threads = 12;  ///< that read at a time: at most half of them, and at most six, for pictures
     /// The reader's own thread calls this first, for example to lower its priority. That thread
     /// puts pictures together and calls `made`.
     std::function<void()> begin_thread = {};
@@ -71,7 +71,7 @@ class DetailReader {
     /// that is empty or not inside its level, and for none.
     void want(int viewer, const std::vector<DetailBox>& coarse_to_fine,
               std::chrono::milliseconds interval = std::chrono::milliseconds(250));
-    /// Nothing any more.
+    /// Cancels all requests of this viewer.
     void forget(int viewer);
     DetailStatus status() const;
 

@@ -54,5 +54,5 @@ def described(command):
     governor = first("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", r"(\w+)", "not visible")
     system = first("/etc/os-release", r'^PRETTY_NAME="?([^"\n]*)')
     return (f"Measured on {time.strftime('%Y-%m-%d', time.gmtime())} on an {model} ({os.cpu_count()} processors, {clock} MHz at the time, "
-            f"frequency governor {governor}, load {LOAD} at the begin), {system}, Linux {platform.release()}. {build()}. "
+            f"frequency governor {governor}, load {LOAD} at the start), {system}, Linux {platform.release()}. {build()}. "
             f"Command: `{command}`.")
