@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "palpate/force.hpp"
+#include "palpate/names.hpp"
 #include "palpate/proxy.hpp"
-#include "palpate/setting.hpp"
 
 namespace palpate {
 

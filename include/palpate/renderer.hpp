@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "palpate/layers.hpp"
-#include "palpate/setting.hpp"
+#include "palpate/names.hpp"
 #include "palpate/tool_proxy.hpp"
 
 namespace palpate {

@@ -7,8 +7,8 @@
 
 #include "palpate/device.hpp"
 #include "palpate/edit.hpp"
+#include "palpate/names.hpp"
 #include "palpate/renderer.hpp"
-#include "palpate/setting.hpp"
 
 namespace palpate {
 
