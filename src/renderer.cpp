@@ -94,8 +94,8 @@ ForceInput force_input(const Renderer& renderer, const DeviceState& device, cons
 /// Layers set the proxy's level; the isovalue waits for their end. What other layers knew does not
 /// count.
 void look_at_layers(Renderer& renderer) {
-    const Layers* const set = renderer.settings.tool ? nullptr : renderer.settings.layers.get();
-    if (renderer.layers.set && renderer.layers.set != set) {
+    const bool by_set = !renderer.settings.tool && renderer.layers.set == renderer.settings.layers;
+    if (renderer.layers.set && !by_set) {
         forget_layers(renderer.layers, renderer.proxy, renderer.field);
     }
     auto& waiting = renderer.isovalue_without_layers;
@@ -171,7 +171,7 @@ Moved move_proxy(Renderer& renderer, const DeviceState& device, const Vec3& hip,
                                .device_per_volume = 1 / transform.scale,
                                .time = device.time,
                                .pointing = transform.rotation * device.pointing};
-        moved.layers = update_layers(*settings.layers, renderer.layers, renderer.proxy,
+        moved.layers = update_layers(settings.layers, renderer.layers, renderer.proxy,
                                      renderer.field, input, observer);
         moved.proxy = moved.layers->proxy;
     } else {

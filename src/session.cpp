@@ -65,8 +65,8 @@ void scale_about_scp(Renderer& renderer, double scale) {
 
 void use_layers(Renderer& renderer, const command::UseLayers& to) noexcept {
     RendererSettings& settings = renderer.settings;
-    const bool keeps = to.same_surfaces && settings.layers && to.layers &&
-                       keep_for(renderer.layers, *settings.layers, *to.layers);
+    const bool keeps = to.same_surfaces && renderer.layers.set == settings.layers &&
+                       keep_for(renderer.layers, to.layers);
     // Before the set goes, so that nothing of it is freed here.
     if (!keeps) forget_layers(renderer.layers, renderer.proxy, renderer.field);
     settings.layers = to.layers;

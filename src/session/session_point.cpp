@@ -148,8 +148,9 @@ void halt(Session& session, SessionPoint& point) noexcept {
     point.proxy = renderer.proxy;
     point.isovalue_without_layers = renderer.isovalue_without_layers;
     point.force = renderer.force;
-    point.layers = renderer.layers.set == settings.layers.get() ? renderer.layers : LayerState{};
+    point.layers = renderer.layers.set == settings.layers ? renderer.layers : LayerState{};
     point.layers.covered.reset();
+    point.layers.set.reset();
 }
 
 void check(const SessionPoint& point, const RendererSettings& settings, const FieldKind& field) {
@@ -183,9 +184,9 @@ void resume(Session& session, const SessionPoint& point) noexcept {
     renderer.isovalue_without_layers = point.isovalue_without_layers;
     renderer.force = point.force;
     renderer.layers = point.layers;
-    restore_set(renderer.layers, settings.layers.get(), renderer.field);
+    restore_set(renderer.layers, settings.layers, renderer.field);
     if (renderer.layers.set) {  // covers the field
-        Tissues(*settings.layers, renderer.layers, renderer.proxy, renderer.field);
+        Tissues(settings.layers, renderer.layers, renderer.proxy, renderer.field);
     }
     if (!renderer.tool_proxy) return;
     halt_tool(*renderer.tool_proxy);
