@@ -110,11 +110,10 @@ struct ForceInput {
     /// once this is false.
     bool released = false;
     bool constrained = false;
-    Vec3 hand = Vec3::Zero();    ///< device position [device mm]
-    Vec3 pull = Vec3::Zero();    ///< SCP - HIP [device mm]
-    Vec3 normal = Vec3::Zero();  ///< unit, out of the solid. Zero if unknown
-    double surface_distance =
-        -1;  ///< free: [device mm] to the surface against the normal; < 0 none
+    Vec3 hand = Vec3::Zero();           ///< device position [device mm]
+    Vec3 pull = Vec3::Zero();           ///< SCP - HIP [device mm]
+    Vec3 normal = Vec3::Zero();         ///< free: unit, from the nearest surface to the SCP
+    double surface_distance = -1;       ///< free: [device mm] to that surface; < 0: there is none
     Vec3 texture_slope = Vec3::Zero();  ///< gradient of the texture's height at the SCP
     double rotational_stiffness = 0;    ///< [N mm/rad] 0: nothing turns, so there is no torque
     Quaternion orientation = Quaternion::Identity();  ///< of the hand

@@ -76,6 +76,8 @@ struct Renderer {
     /// The proxy was placed in the solid and has not been outside since: it is on no side of a
     /// surface, and starts anew where it would have to wait for samples.
     bool starts_inside = false;
+    /// The point of the surface to which the magnet pulls [mm, physical]; in contact, the SCP.
+    std::optional<Vec3> drawn_to = {};
 };
 
 /// The field that the proxy touches: that of the samples or, with layers by label, the one that

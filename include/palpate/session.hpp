@@ -171,6 +171,7 @@ struct SessionPoint {
     HandPast past = {};
     Proxy proxy;
     std::optional<double> isovalue_without_layers;
+    std::optional<Vec3> drawn_to;
     ForceState force;
     LayerState layers;
     ToolState tool;

@@ -142,6 +142,7 @@ static void members(auto& v, Is<SessionPoint> auto& s) {
     v("past", s.past);
     v("proxy", s.proxy);
     v("isovalue_without_layers", s.isovalue_without_layers);
+    v("drawn_to", s.drawn_to);
     v("force", s.force);
     v("layers", s.layers);
     auto& tool = s.tool;

@@ -147,6 +147,7 @@ void halt(Session& session, SessionPoint& point) noexcept {
     renderer.starts_inside = false;
     point.proxy = renderer.proxy;
     point.isovalue_without_layers = renderer.isovalue_without_layers;
+    point.drawn_to = renderer.drawn_to;
     point.force = renderer.force;
     point.layers = renderer.layers.set == settings.layers ? renderer.layers : LayerState{};
     point.layers.covered.reset();
@@ -167,6 +168,8 @@ void check(const SessionPoint& point, const RendererSettings& settings, const Fi
             "the proxy's state is out of range");
     require(!proxy.placed || proxy.interpolation == field.interpolation,
             "the proxy is of another field");
+    require(!point.drawn_to || is_near(*point.drawn_to, field.geometry),
+            "the magnet's point has no place");
     require(is_of(point.layers, settings.layers.get()), "it is of other layers");
     require(is_possible(point.tool, settings.tool.get(), field.geometry), "the tool has no pose");
 }
@@ -182,6 +185,7 @@ void resume(Session& session, const SessionPoint& point) noexcept {
     renderer.proxy = point.proxy;
     renderer.starts_inside = false;
     renderer.isovalue_without_layers = point.isovalue_without_layers;
+    renderer.drawn_to = point.drawn_to;
     renderer.force = point.force;
     renderer.layers = point.layers;
     restore_set(renderer.layers, settings.layers, renderer.field);

@@ -169,5 +169,54 @@ TEST(EnergyAtTheLimit, is_not_made_by_the_two_springs_of_a_tool) {
     }
 }
 
+/// Surfaces of all kinds round (24, 24, 24), at level 88.
+std::array<Volume, 4> bodies() {
+    const auto made = [](auto&& distance) {
+        return volume_of<float>(grid(cube(48)), [&](const Index3& i) {
+            return 100 - distance(Vec3(i.cast<double>() - Vec3::Constant(24)));
+        });
+    };
+    return {made([](const Vec3& at) { return at.norm(); }),
+            made([](const Vec3& at) { return Vec3(0.5 * at[0], at[1], at[2]).norm(); }),
+            made([](const Vec3& at) { return at.cwiseAbs().maxCoeff(); }),
+            noise_volume<float>(grid(cube(48)), 3, 60, 110)};
+}
+
+/// The first time round, the hand comes to where the magnet holds it.
+TEST(EnergyOfTheMagnet, is_not_made_over_closed_paths_of_the_hand) {
+    for (const Volume& body : bodies()) {
+        for (const auto interpolation : {Interpolation::linear, Interpolation::cubic}) {
+            double most = -HUGE_VAL;
+            int drawn = 0;
+            for (int seed = 0; seed < scaled(20); ++seed) {
+                Random random(std::uint64_t(seed) + 1);
+                RendererSettings settings =
+                    settings_for({interpolation, Surfaces::level, Touching::point, Data::plain});
+                settings.force.magnet = {2, 0.5};
+                Session session{
+                    make_renderer(Field(body, Solid::above, 0, interpolation), 88, settings),
+                    {.fastest_hand = infinity}};
+                const Loop loop(random, Vec3::Constant(24) + 13 * random.direction());
+                constexpr int steps = 6000;
+                double work = 0;
+                Tick last;
+                for (int i = 0; i <= 3 * steps; ++i) {
+                    const DeviceReading reading = loop.at(double(i) / steps);
+                    const Tick tick = advance(session, (i + 1) * period, reading).tick;
+                    const Vec3 way = reading.position - loop.at(double(i - 1) / steps).position;
+                    if (i > steps) work += 0.5 * (last.force + tick.force).dot(way);
+                    drawn += tick.proxy.mode == Mode::free && !tick.force.isZero(0);
+                    last = tick;
+                }
+                most = std::max(most, work / 2);
+            }
+            std::printf("[ evidence ] magnet, %s: drawn in %d ticks, gained %.1e J\n",
+                        std::string(name_of(interpolation)).c_str(), drawn, most / 1000);
+            EXPECT_LE(most / 1000, 1e-6);
+            EXPECT_GT(drawn, scaled(2000));
+        }
+    }
+}
+
 }  // namespace
 }  // namespace energy
