@@ -479,7 +479,7 @@ Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer
     const ForceResult force =
         render_force(renderer.force, layers ? layers->force : settings.force, settings.device,
                      force_input(renderer, device, tick, layers));
-    if (waits) renderer.force.ramp_begin = device.time;  // the force comes back with the ramp
+    renderer.force.changed = waits;  // samples that arrive change the contact
     if (renderer.layers.covered) tick.proxy.density = value_at(renderer.field, tick.proxy.scp);
     tick.proxy.level = level_at(renderer.field, tick.proxy.scp);
     if (layers) tick.layers = layers->felt;

@@ -60,7 +60,7 @@ struct RendererSettings {
 };
 
 /// The complete state between two ticks. Settings may be replaced between ticks, after check(). For
-/// another level, call use_isovalue().
+/// another level, call use_isovalue(). Set `force.changed` with every change of the contact.
 struct Renderer {
     Field field;  ///< of the samples
     RendererSettings settings;

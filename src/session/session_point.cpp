@@ -94,6 +94,7 @@ bool is_finite(const ForceState& force) {
     return std::isfinite(force.time) && std::isfinite(force.ramp_begin) && force.hand.allFinite() &&
            force.velocity.allFinite() && force.force.allFinite() && is_unit(force.orientation) &&
            force.angular_velocity.allFinite() && force.torque.allFinite() &&
+           std::isfinite(force.spring) && std::isfinite(force.turning_spring) &&
            force.motors.warmth >= 0 && std::isfinite(force.motors.warmth) &&
            std::isfinite(force.motors.time) && std::isfinite(force.motors.force);
 }
