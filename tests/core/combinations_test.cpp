@@ -92,6 +92,10 @@ class Judge {
     Renderer& renderer() { return session_.renderer; }
     TouchedField touched() { return touched_by(renderer(), of_level_); }
 
+    /// Where samples are missing on the hand's way, the proxy goes only a part of it in one tick.
+    bool all_in_memory(const Vec3& from, const Vec3& hand) {
+        return is_resident(renderer().field, from, 2 * (hand - from).norm() + 8);
+    }
     Tick feel_tool(const DeviceState& state) {
         ToolProxy& proxy = *renderer().tool_proxy;
         const ToolState before = proxy;
@@ -101,6 +105,7 @@ class Judge {
         r.mode = tick.proxy.mode;
         r.work = tick.proxy.work;
         r.proxy = {tick.proxy.scp, tick.tool.proxy};
+        if (!all_in_memory(before.pose.position, tick.proxy.hip)) r.status = UpdateStatus::waiting;
         of_tool_.judge(proxy, before, {tick.proxy.hip, tick.tool.hand}, r);
         return tick;
     }
@@ -137,7 +142,10 @@ class Judge {
             tally_.at_labels += tick.layers.touched >= touched().levels();
             tally_.g2 = std::max(tally_.g2, std::abs(here));
             ASSERT_LE(std::abs(here), off_surface) << "G2";
-            if (at.status == UpdateStatus::done && tally_.ticks % 4 == 0) judge_optimum(at);
+            if (at.status == UpdateStatus::done && tally_.ticks % 4 == 0 &&
+                all_in_memory(before.scp_physical, at.hip)) {
+                judge_optimum(at);
+            }
         } else if (at.mode == Mode::free && at.status == UpdateStatus::done) {
             ASSERT_EQ(at.scp, at.hip) << "free, not at the HIP";
         }
@@ -146,6 +154,8 @@ class Judge {
     void judge_path(const Proxy& before, const ProxyUpdate& at) {
         Vec3 from = before.scp_physical;
         double last = (from - at.hip).norm();
+        // Otherwise the path leads to a place on the hand's way.
+        const bool to_hand = all_in_memory(from, at.hip);
         path_.push_back(at.scp);
         for (const Vec3& to : path_) {
             ++tally_.pieces;
@@ -153,9 +163,11 @@ class Judge {
             tally_.g1 = std::max(tally_.g1, worst);
             ASSERT_LE(worst, off_surface) << "G1";
             const double now = (to - at.hip).norm();
-            tally_.g4 = std::max(tally_.g4, now - last);
-            ASSERT_LE(now, last + 1e-9) << "G4";
-            last = now;
+            if (to_hand || &to == &path_.back()) {
+                tally_.g4 = std::max(tally_.g4, now - last);
+                ASSERT_LE(now, last + 1e-9) << "G4";
+                last = now;
+            }
             from = to;
         }
     }
