@@ -118,7 +118,8 @@ Layers layers_round(const Touch& touch, int count, By by) {
 
 /// The same updates through a tick of layers.
 void run_layers(const Case& chosen, const Touch& touch, Proxy proxy, long updates) {
-    const Layers layers = layers_round(touch, chosen.layers, chosen.by);
+    const auto layers =
+        std::make_shared<const Layers>(layers_round(touch, chosen.layers, chosen.by));
     LayerState state;
     LayerInput input;
     input.method = baselines::method_named(chosen.method);

@@ -94,7 +94,7 @@ struct InLayers {
 };
 struct OfLayers {
     const Field& field;
-    const Layers& layers;
+    std::shared_ptr<const Layers> layers;
     LayerInput input;
 
     Vec3 next() { return anywhere(field.geometry()); }
@@ -134,11 +134,11 @@ void run_all(const std::string& name, const Touch& touch, long updates) {
     run_point(name + " resident", smooth(all_resident(touch)).field, touch.isovalue, updates);
     run_point(name + " between", smooth(between_frames(touch)).field, touch.isovalue, updates);
     for (const bool linear : {true, false}) {
-        Layers layers;
+        const auto layers = std::make_shared<Layers>();
         for (int i = 0; i < 6; ++i) {
-            layers.layers.push_back({.name = std::to_string(i)});
-            layers.layers.back().level = touch.isovalue + 0.08 * (i - 3) * touch.field.range();
-            layers.layers.back()[HapticProperty::puncture_force] = 0.3;
+            layers->layers.push_back({.name = std::to_string(i)});
+            layers->layers.back().level = touch.isovalue + 0.08 * (i - 3) * touch.field.range();
+            layers->layers.back()[HapticProperty::puncture_force] = 0.3;
         }
         InLayers in;
         in.state.opening.fill(Vec3::Zero());

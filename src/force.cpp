@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -98,17 +99,17 @@ double part_of_springs(double stiffness, double most_force, double most_torque,
     return part;
 }
 
-/// The ramp, the maximum and the rate. A setting that is NaN or negative, which check() refuses,
+/// The maximum, the ramp and the rate. A setting that is NaN or negative, which check() refuses,
 /// gives no force or a NaN that the caller catches, never a larger force.
 Vec3 within(Vec3 force, const Vec3& before, const Bounds& bounds, double step,
             std::uint16_t& flags) {
-    if (!(bounds.ramp >= 1)) {
-        force *= bounds.ramp;
-        flags |= force_ramping;
-    }
     if (force.norm() > bounds.most) {
         force *= bounds.most / force.norm();
         flags |= force_limited;
+    }
+    if (!(bounds.ramp >= 1)) {
+        force *= bounds.ramp;
+        flags |= force_ramping;
     }
     const Vec3 change = force - before;
     const double most_change = std::isfinite(bounds.rate) ? bounds.rate * step : bounds.rate;
@@ -119,6 +120,59 @@ Vec3 within(Vec3 force, const Vec3& before, const Bounds& bounds, double step,
     // Again, because the rate limit keeps a force above a limit that has just been lowered.
     if (force.norm() > bounds.most) force *= bounds.most / force.norm();
     return force;
+}
+
+/// A spring of translation [N] or rotation [N mm], or a magnet.
+struct Spring {
+    double now;      // its force, within the limit
+    double by_hand;  // by which the hand's motion since the last tick can have raised it
+    double before;   // its force in the last tick
+    double most;     // its limit
+
+    /// The part of it that acts at once where something other than the hand changed it. `ramp`: the
+    /// part of a ramp that a tick is.
+    double part_at_once(double ramp) const {
+        const double at_once = before + by_hand + most * ramp;
+        return now > at_once ? at_once / now : 1;
+    }
+};
+
+/// What the hand's motion can change per length of its way, at most [N/mm].
+double steepest(const ForceSettings& settings) {
+    const Magnet& magnet = settings.magnet;
+    return std::max(settings.stiffness,
+                    magnet.distance > 0 ? 4 * magnet.peak / magnet.distance : 0.0);
+}
+
+Spring spring_of(const ForceState& state, const ForceSettings& settings, const ForceInput& input,
+                 double part, double most) {
+    const double now = input.constrained ? part * settings.stiffness * input.pull.norm()
+                                         : magnet_force(settings.magnet, input).norm();
+    return {std::min(now, most), steepest(settings) * (input.hand - state.hand).norm(),
+            state.spring, most};
+}
+
+Spring turning_spring_of(const ForceState& state, const ForceInput& input, double part,
+                         double most) {
+    const double stiffness = input.constrained ? input.rotational_stiffness : 0;
+    const double way =
+        state.turns ? rotation_between(state.orientation, input.orientation).norm() : 0;
+    return {std::min(part * stiffness * input.turn.norm(), most), stiffness * way,
+            state.turning_spring, most};
+}
+
+/// The part of the ramp at this time. After a change the ramp goes on from the part with which the
+/// springs give what they gave before. `step` is the time since the last tick [s].
+double part_of_ramp(ForceState& state, double ramp, double time, double step, const Spring& spring,
+                    const Spring& turning) {
+    const double since = time - state.ramp_begin;
+    const double part = since >= ramp ? 1 : since / ramp;
+    if (!std::exchange(state.changed, false)) return part;
+    const double at_once =
+        std::min(spring.part_at_once(step / ramp), turning.part_at_once(step / ramp));
+    if (!(at_once < part)) return part;
+    state.ramp_begin = time - at_once * ramp;
+    return at_once;
 }
 
 /// Filters a velocity; `step` is the time since the last tick [s].
@@ -239,6 +293,17 @@ ForceSettings stable(ForceSettings s, const DeviceLimits& limits) noexcept {
     return s;
 }
 
+static void keep(ForceState& state, const ForceInput& input, const Vec3& force,
+                 const Vec3& torque) {
+    state.time = input.time;
+    state.hand = input.hand;
+    state.force = force;
+    state.motors.force = force.norm();
+    state.turns = input.rotational_stiffness > 0;
+    state.orientation = input.orientation;
+    state.torque = torque;
+}
+
 /// From a release until the force is small again. Then the ramp begins.
 static bool waits(ForceState& state, const ForceInput& input, bool is_strong) {
     state.waiting |= input.released;
@@ -283,15 +348,17 @@ ForceResult render_force(ForceState& state, const ForceSettings& settings,
     if (!std::isfinite(force.squaredNorm()) || !std::isfinite(torque.squaredNorm())) {
         return stop(state, force_not_finite);
     }
+    Spring spring = spring_of(state, settings, input, part, most_force);
+    Spring turning = turning_spring_of(state, input, turns ? part : 0, most_torque);
     // The force without a limit decides.
     const bool strong = part > 0 && !(force.norm() <= part * settings.start_below);
     if (waits(state, input, strong)) {
         force.setZero();
         torque.setZero();
+        spring.now = turning.now = 0;
         flags |= force_waiting;
     }
-    const double since = input.time - state.ramp_begin;
-    const double ramp = since >= settings.ramp ? 1 : since / settings.ramp;
+    const double ramp = part_of_ramp(state, settings.ramp, input.time, step, spring, turning);
     const Bounds of_force{most_force, settings.rate_limit, ramp};
     const Bounds of_torque{most_torque, settings.torque_rate_limit, ramp};
     force = within(force, state.force, of_force, step, flags);
@@ -299,13 +366,9 @@ ForceResult render_force(ForceState& state, const ForceSettings& settings,
     if (is_warm && !(force.norm() < spared * (1 - 1e-9))) flags |= force_warm;
     if (turns) torque = within(torque, state.torque, of_torque, step, flags);
     if (!force.allFinite() || !torque.allFinite()) return stop(state, force_not_finite);
-    state.time = input.time;
-    state.hand = input.hand;
-    state.force = force;
-    state.motors.force = force.norm();
-    state.turns = input.rotational_stiffness > 0;
-    state.orientation = input.orientation;
-    state.torque = torque;
+    keep(state, input, force, torque);
+    state.spring = ramp * spring.now;
+    state.turning_spring = ramp * turning.now;
     return {force, torque, flags};
 }
 

@@ -1,7 +1,11 @@
-// Compares names by the number of letters that have to change (optimal string alignment).
+// Compares names by the number of letters that have to change (optimal string alignment), and
+// writes messages about numbers that are out of range.
 #include "palpate/names.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -58,6 +62,16 @@ std::string use_one_of(std::span<const std::string> names, std::string_view word
     }
     const std::string near = nearest_name(word, names);
     return near.empty() ? text : text + " (did you mean " + near + "?)";
+}
+
+std::string number_text(double value) {
+    std::array<char, 32> text;
+    std::snprintf(text.data(), text.size(), "%.6g", value);
+    return text.data();
+}
+
+void refuse_number(const std::string& title, double value, const std::string& words) {
+    throw std::invalid_argument(title + " = " + number_text(value) + ": must be " + words);
 }
 
 }  // namespace palpate

@@ -17,18 +17,6 @@ namespace {
 /// beside the other.
 constexpr double most_gyration_ratio = 1e3;
 
-/// Step budget of the magnet's search for a surface.
-constexpr int magnet_budget = 512;
-
-/// Distance [physical mm] from a free SCP to the surface, against the normal of the field there;
-/// -1 if there is none within `reach`.
-double distance_to_surface(const Field& field, const ProxyUpdate& at, const Vec3& normal,
-                           double reach) {
-    if (normal.isZero(0) || !std::isfinite(at.isovalue)) return -1;
-    const RayHit ray = cast_ray(field, at.isovalue, at.scp, at.scp - reach * normal, magnet_budget);
-    return ray.hit ? (ray.point - at.scp).norm() : -1;
-}
-
 bool knows_layers(ProxyMethod method) {
     return method == &update_exact || method == &update_straight;
 }
@@ -37,6 +25,38 @@ bool knows_layers(ProxyMethod method) {
 bool counts(UpdateStatus status) {
     return status == UpdateStatus::done || status == UpdateStatus::out_of_budget ||
            status == UpdateStatus::waiting;
+}
+
+/// Step budget of the magnet's search for a surface, and of the way along it.
+constexpr int magnet_budget = 512;
+
+/// The point of the surface [physical mm] that draws a free SCP, if it is within `reach`. Without a
+/// last one it is looked for against the normal of the field. From there, a proxy that may not
+/// leave the solid comes as near as it can. So the magnet pulls along the gradient of its distance,
+/// to the same surface until it lets go, and closed paths of the hand gain nothing.
+std::optional<Vec3> drawing_point(const Renderer& renderer, const ProxyUpdate& at, double reach) {
+    const Field& field = felt_field(renderer);
+    if (!std::isfinite(at.isovalue) || !is_resident(renderer.field, at.scp, reach)) {
+        return std::nullopt;
+    }
+    std::optional<Vec3> from = renderer.drawn_to;
+    if (!from) {
+        const Vec3 normal = normal_at(renderer.proxy, field);
+        if (normal.isZero(0)) return std::nullopt;
+        const RayHit ray =
+            cast_ray(field, at.isovalue, at.scp, at.scp - reach * normal, magnet_budget);
+        if (ray.hit) from = ray.point;
+    }
+    if (!from || !((*from - at.scp).norm() < reach)) return std::nullopt;
+    Proxy in_solid;
+    in_solid.isovalue = field.sign() * std::numeric_limits<double>::infinity();
+    in_solid.behind = at.isovalue;
+    in_solid.scp_physical = *from;
+    in_solid.placed = true;
+    put_on_lattice(in_solid, field);
+    const ProxyUpdate nearest =
+        update_exact(in_solid, field, at.scp, {.step_budget = magnet_budget});
+    return counts(nearest.status) ? std::optional(nearest.scp) : std::nullopt;
 }
 
 /// The result of moving the proxy in a tick, from which the force follows.
@@ -52,7 +72,7 @@ double turning_of(const RendererSettings& settings) {
 }
 
 /// Input of the force, with a point, with layers or with a tool.
-ForceInput force_input(const Renderer& renderer, const DeviceState& device, const Tick& tick,
+ForceInput force_input(Renderer& renderer, const DeviceState& device, const Tick& tick,
                        const std::optional<LayersUpdate>& layers) {
     const ProxyUpdate& at = tick.proxy;
     const RendererSettings& settings = renderer.settings;
@@ -76,26 +96,27 @@ ForceInput force_input(const Renderer& renderer, const DeviceState& device, cons
                         : Vec3(to_device * (at.scp - at.hip) / transform.scale);
     if (settings.tool) return input;
     const Magnet& magnet = settings.force.magnet;
+    const bool draws = magnet.distance > 0 && magnet.peak > 0;
     if (input.constrained) {
         input.texture_slope = to_device * texture_slope(settings.force.texture, at.scp);
-    } else if (magnet.distance > 0 && magnet.peak > 0) {
-        const double reach = magnet.distance * transform.scale;
-        const Field& felt = felt_field(renderer);
-        const Vec3 normal = normal_at(renderer.proxy, felt);
-        const double distance = is_resident(renderer.field, at.scp, reach)
-                                    ? distance_to_surface(felt, at, normal, reach)
-                                    : -1;
-        input.normal = to_device * normal;
-        input.surface_distance = distance / transform.scale;
+        renderer.drawn_to = at.behind ? std::nullopt : std::optional(at.scp);
+    } else if (draws) {
+        renderer.drawn_to = drawing_point(renderer, at, magnet.distance * transform.scale);
     }
+    if (!draws) renderer.drawn_to.reset();
+    if (input.constrained || !renderer.drawn_to) return input;
+    const Vec3 way = at.scp - *renderer.drawn_to;
+    const double distance = way.norm();
+    if (distance > 0) input.normal = to_device * way / distance;
+    input.surface_distance = distance / transform.scale;
     return input;
 }
 
 /// Layers set the proxy's level; the isovalue waits for their end. What other layers knew does not
 /// count.
 void look_at_layers(Renderer& renderer) {
-    const Layers* const set = renderer.settings.tool ? nullptr : renderer.settings.layers.get();
-    if (renderer.layers.set && renderer.layers.set != set) {
+    const bool by_set = !renderer.settings.tool && renderer.layers.set == renderer.settings.layers;
+    if (renderer.layers.set && !by_set) {
         forget_layers(renderer.layers, renderer.proxy, renderer.field);
     }
     auto& waiting = renderer.isovalue_without_layers;
@@ -171,7 +192,7 @@ Moved move_proxy(Renderer& renderer, const DeviceState& device, const Vec3& hip,
                                .device_per_volume = 1 / transform.scale,
                                .time = device.time,
                                .pointing = transform.rotation * device.pointing};
-        moved.layers = update_layers(*settings.layers, renderer.layers, renderer.proxy,
+        moved.layers = update_layers(settings.layers, renderer.layers, renderer.proxy,
                                      renderer.field, input, observer);
         moved.proxy = moved.layers->proxy;
     } else {
@@ -458,7 +479,7 @@ Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer
     const ForceResult force =
         render_force(renderer.force, layers ? layers->force : settings.force, settings.device,
                      force_input(renderer, device, tick, layers));
-    if (waits) renderer.force.ramp_begin = device.time;  // the force comes back with the ramp
+    renderer.force.changed = waits;  // samples that arrive change the contact
     if (renderer.layers.covered) tick.proxy.density = value_at(renderer.field, tick.proxy.scp);
     tick.proxy.level = level_at(renderer.field, tick.proxy.scp);
     if (layers) tick.layers = layers->felt;

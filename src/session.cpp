@@ -65,8 +65,8 @@ void scale_about_scp(Renderer& renderer, double scale) {
 
 void use_layers(Renderer& renderer, const command::UseLayers& to) noexcept {
     RendererSettings& settings = renderer.settings;
-    const bool keeps = to.same_surfaces && settings.layers && to.layers &&
-                       keep_for(renderer.layers, *settings.layers, *to.layers);
+    const bool keeps = to.same_surfaces && renderer.layers.set == settings.layers &&
+                       keep_for(renderer.layers, to.layers);
     // Before the set goes, so that nothing of it is freed here.
     if (!keeps) forget_layers(renderer.layers, renderer.proxy, renderer.field);
     settings.layers = to.layers;
@@ -91,6 +91,7 @@ void play(Session& session, double time) {
     if (session.speed != 0 && dt > 0) {
         const double to = field.samples().within(field.time() + session.speed * dt);
         change_data(session.renderer, [to](Field& changed) { changed.set_time(to); });
+        session.renderer.force.changed = true;
     }
     session.past.begun = true;
     session.past.last_tick = time;
@@ -180,6 +181,7 @@ void apply(Session& session,  // NOLINT(bugprone-exception-escape)
     Renderer& renderer = session.renderer;
     RendererSettings& settings = renderer.settings;
     Field& field = renderer.field;
+    renderer.force.changed = true;
     const Overloaded apply_one{
         [&](const command::Isovalue& to) { use_isovalue(renderer, to.isovalue); },
         [&](const command::Freeze& to) {

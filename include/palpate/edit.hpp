@@ -10,8 +10,8 @@
 #include <variant>
 
 #include "palpate/field.hpp"
+#include "palpate/names.hpp"
 #include "palpate/progress.hpp"
-#include "palpate/setting.hpp"
 #include "palpate/tool.hpp"
 
 namespace palpate {

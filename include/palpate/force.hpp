@@ -110,11 +110,10 @@ struct ForceInput {
     /// once this is false.
     bool released = false;
     bool constrained = false;
-    Vec3 hand = Vec3::Zero();    ///< device position [device mm]
-    Vec3 pull = Vec3::Zero();    ///< SCP - HIP [device mm]
-    Vec3 normal = Vec3::Zero();  ///< unit, out of the solid. Zero if unknown
-    double surface_distance =
-        -1;  ///< free: [device mm] to the surface against the normal; < 0 none
+    Vec3 hand = Vec3::Zero();           ///< device position [device mm]
+    Vec3 pull = Vec3::Zero();           ///< SCP - HIP [device mm]
+    Vec3 normal = Vec3::Zero();         ///< free: unit, from the nearest surface to the SCP
+    double surface_distance = -1;       ///< free: [device mm] to that surface; < 0: there is none
     Vec3 texture_slope = Vec3::Zero();  ///< gradient of the texture's height at the SCP
     double rotational_stiffness = 0;    ///< [N mm/rad] 0: nothing turns, so there is no torque
     Quaternion orientation = Quaternion::Identity();  ///< of the hand
@@ -125,7 +124,7 @@ struct ForceInput {
 enum ForceFlag : std::uint16_t {
     force_limited = 1,       ///< cut to the maximum
     force_rate_limited = 2,  ///< change of force cut
-    force_ramping = 4,       ///< in the ramp after a start or pause
+    force_ramping = 4,       ///< in the ramp after a start, a pause or a change
     force_stale = 8,         ///< input stale, invalid or going back in time: zero
     force_not_finite = 16,   ///< some number was NaN or infinite: zero
     force_off = 32,          ///< switched off: zero
@@ -154,16 +153,22 @@ double warm_limit(const DeviceLimits& limits, const MotorHeat& heat) noexcept;
 /// State between ticks.
 struct ForceState {
     bool started = false;
-    bool waiting = true;           ///< for a small enough force to start with
+    bool waiting = true;  ///< for a small enough force to start with
+    /// To be set with every change of the contact that is not the hand's motion, for example of a
+    /// level, of samples or settings. In the next tick, springs then rise no faster than by the
+    /// hand's motion and the ramp.
+    bool changed = false;
     double time = 0;               ///< [s] of the last tick
     double ramp_begin = 0;         ///< [s]
     Vec3 hand = Vec3::Zero();      ///< [device mm]
     Vec3 velocity = Vec3::Zero();  ///< [device mm/s], low-pass filtered; at most 10 m/s counts
     Vec3 force = Vec3::Zero();     ///< [N] as rendered
+    double spring = 0;             ///< [N] the part of it that spring or magnet gave
     bool turns = false;            ///< the next members are known
     Quaternion orientation = Quaternion::Identity();
     Vec3 angular_velocity = Vec3::Zero();  ///< [rad/s], low-pass filtered; at most 100 rad/s counts
     Vec3 torque = Vec3::Zero();            ///< [N mm] as rendered
+    double turning_spring = 0;             ///< [N mm] the part of it that the spring gave
     MotorHeat motors;                      ///< kept by every stop
 };
 /// No force, and the ramp begins again. The motors stay as warm as they are.
@@ -176,9 +181,10 @@ struct ForceResult {
 };
 
 /// Force and torque of one tick. Never throws. Input that is not valid gives zero at once, and the
-/// ramp starts again. Even settings that check() would refuse give no force beyond `limits`. Warm
-/// motors lower the maximum (warm_limit()). A lowered limit holds at once: that fall, and every
-/// stop, is exempt from the rate limit.
+/// ramp starts again. After a change (ForceState::changed) the ramp goes on from where the force
+/// was. Even settings that check() would refuse give no force beyond `limits`. Warm motors lower
+/// the maximum (warm_limit()). A lowered limit holds at once: that fall, and every stop, is exempt
+/// from the rate limit.
 ForceResult render_force(ForceState& state, const ForceSettings& settings,
                          const DeviceLimits& limits, const ForceInput& input);
 

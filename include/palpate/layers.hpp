@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "palpate/force.hpp"
+#include "palpate/names.hpp"
 #include "palpate/proxy.hpp"
-#include "palpate/setting.hpp"
 
 namespace palpate {
 
@@ -185,8 +185,9 @@ struct NeedleState {
 
 /// Everything that layers keep between two ticks.
 struct LayerState {
-    /// The set to which this state belongs, only for comparison; null: none yet.
-    const Layers* set = nullptr;
+    /// The set to which this state belongs, held so that no other one can be taken for it; null:
+    /// none yet.
+    std::shared_ptr<const Layers> set;
     int layer_count = -1, level_count = -1;  ///< of that set
     /// Which labels (bit k + 1 for layer k; bit 0: none of them) the SCP may be in.
     std::uint32_t open = 1;
@@ -210,7 +211,7 @@ struct LayerState {
 /// Keeps a state for another set if that set has the same surfaces: the same number of layers, the
 /// same number of levels among them, and the same labels. Everything else may differ. False if the
 /// surfaces are not the same.
-bool keep_for(LayerState& state, const Layers& before, const Layers& after) noexcept;
+bool keep_for(LayerState& state, const std::shared_ptr<const Layers>& after) noexcept;
 /// Resets the state: the proxy stays where it is, on the lattice of the data.
 void forget_layers(LayerState& state, Proxy& proxy, const Field& data) noexcept;
 
@@ -243,7 +244,8 @@ struct LayersUpdate {
 /// surface gives way at the point on the hand's path where its spring reaches the puncture force.
 /// The SCP then continues towards the hand in the same tick, through at most eight surfaces. A
 /// state of another set is reset at the proxy's position.
-LayersUpdate update_layers(const Layers& layers, LayerState& state, Proxy& proxy,
-                           const Field& field, const LayerInput& input, StepObserver observer = {});
+LayersUpdate update_layers(const std::shared_ptr<const Layers>& layers, LayerState& state,
+                           Proxy& proxy, const Field& field, const LayerInput& input,
+                           StepObserver observer = {});
 
 }  // namespace palpate

@@ -15,7 +15,6 @@
 // clang-format off
 #include "palpate/names.hpp"
 #include "palpate/progress.hpp"
-#include "palpate/setting.hpp"
 #include "palpate/volume.hpp"
 #include "palpate/tool.hpp"
 #include "palpate/samples.hpp"

@@ -10,7 +10,7 @@
 #include <span>
 
 #include "palpate/cubic.hpp"
-#include "palpate/setting.hpp"
+#include "palpate/names.hpp"
 
 namespace palpate {
 

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "palpate/layers.hpp"
-#include "palpate/setting.hpp"
+#include "palpate/names.hpp"
 #include "palpate/tool_proxy.hpp"
 
 namespace palpate {
@@ -60,7 +60,7 @@ struct RendererSettings {
 };
 
 /// The complete state between two ticks. Settings may be replaced between ticks, after check(). For
-/// another level, call use_isovalue().
+/// another level, call use_isovalue(). Set `force.changed` with every change of the contact.
 struct Renderer {
     Field field;  ///< of the samples
     RendererSettings settings;
@@ -76,6 +76,8 @@ struct Renderer {
     /// The proxy was placed in the solid and has not been outside since: it is on no side of a
     /// surface, and starts anew where it would have to wait for samples.
     bool starts_inside = false;
+    /// The point of the surface to which the magnet pulls [mm, physical]; in contact, the SCP.
+    std::optional<Vec3> drawn_to = {};
 };
 
 /// The field that the proxy touches: that of the samples or, with layers by label, the one that

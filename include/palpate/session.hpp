@@ -7,8 +7,8 @@
 
 #include "palpate/device.hpp"
 #include "palpate/edit.hpp"
+#include "palpate/names.hpp"
 #include "palpate/renderer.hpp"
-#include "palpate/setting.hpp"
 
 namespace palpate {
 
@@ -171,6 +171,7 @@ struct SessionPoint {
     HandPast past = {};
     Proxy proxy;
     std::optional<double> isovalue_without_layers;
+    std::optional<Vec3> drawn_to;
     ForceState force;
     LayerState layers;
     ToolState tool;

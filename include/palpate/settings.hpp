@@ -10,7 +10,6 @@
 
 #include "palpate/names.hpp"
 #include "palpate/session.hpp"
-#include "palpate/setting.hpp"
 
 namespace palpate {
 

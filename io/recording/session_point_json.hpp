@@ -71,15 +71,18 @@ static void members(auto& v, Is<MotorHeat> auto& s) {
 static void members(auto& v, Is<ForceState> auto& s) {
     v("started", s.started);
     v("waiting", s.waiting);
+    v("changed", s.changed);
     v("time", s.time);
     v("ramp_begin", s.ramp_begin);
     v("hand", s.hand);
     v("velocity", s.velocity);
     v("force", s.force);
+    v("spring", s.spring);
     v("turns", s.turns);
     v("orientation", s.orientation);
     v("angular_velocity", s.angular_velocity);
     v("torque", s.torque);
+    v("turning_spring", s.turning_spring);
     v("motors", s.motors);
 }
 
@@ -142,6 +145,7 @@ static void members(auto& v, Is<SessionPoint> auto& s) {
     v("past", s.past);
     v("proxy", s.proxy);
     v("isovalue_without_layers", s.isovalue_without_layers);
+    v("drawn_to", s.drawn_to);
     v("force", s.force);
     v("layers", s.layers);
     auto& tool = s.tool;

@@ -27,11 +27,13 @@ Index3 nearest_sample(const Field& field, const Vec3& physical) {
 
 }  // namespace
 
-bool keep_for(LayerState& state, const Layers& before, const Layers& after) noexcept {
-    const bool same = state.set == &before && before.layers.size() == after.layers.size() &&
-                      level_count(before) == level_count(after) &&
-                      before.by_label == after.by_label && before.labels == after.labels;
-    if (same) state.set = &after;
+bool keep_for(LayerState& state, const std::shared_ptr<const Layers>& after) noexcept {
+    if (!state.set || !after) return false;
+    const Layers& before = *state.set;
+    const bool same = before.layers.size() == after->layers.size() &&
+                      level_count(before) == level_count(*after) &&
+                      before.by_label == after->by_label && before.labels == after->labels;
+    if (same) state.set = after;
     return same;
 }
 
@@ -51,7 +53,8 @@ static std::optional<Field> to_cover(const Layers& layers, const Field& density)
     return field;
 }
 
-void restore_set(LayerState& state, const Layers* layers, const Field& density) noexcept {
+void restore_set(LayerState& state, const std::shared_ptr<const Layers>& layers,
+                 const Field& density) noexcept {
     if (!layers || state.layer_count != static_cast<int>(layers->layers.size())) {
         state = {};
         return;
@@ -62,10 +65,12 @@ void restore_set(LayerState& state, const Layers* layers, const Field& density) 
     if (state.covered) LabelCover::put(*state.covered, layers->labels, 0, 0, 0);
 }
 
-Tissues::Tissues(const Layers& layers, LayerState& state, Proxy& proxy, const Field& density)
-    : layers_(layers),
-      count_(static_cast<int>(layers.layers.size())),
-      levels_(static_cast<int>(level_count(layers))),
+Tissues::Tissues(const std::shared_ptr<const Layers>& layers, LayerState& state, Proxy& proxy,
+                 const Field& density)
+    : set_(layers),
+      layers_(*layers),
+      count_(static_cast<int>(layers_.layers.size())),
+      levels_(static_cast<int>(level_count(layers_))),
       state_(state),
       proxy_(proxy),
       density_(density) {
@@ -82,8 +87,8 @@ Tissues::Tissues(const Layers& layers, LayerState& state, Proxy& proxy, const Fi
 }
 
 bool Tissues::is_stale() const {
-    return state_.set != &layers_ || state_.layer_count != count_ ||
-           state_.level_count != levels_ || state_.covered.has_value() != has_labels() ||
+    return state_.set != set_ || state_.layer_count != count_ || state_.level_count != levels_ ||
+           state_.covered.has_value() != has_labels() ||
            (state_.covered && LabelCover::of(*state_.covered) != layers_.labels.get());
 }
 
@@ -209,7 +214,7 @@ int Tissues::first_to_hold() const {
 void Tissues::begin(int inside) {
     if (is_stale()) {
         forget_layers(state_, proxy_, density_);
-        state_.set = &layers_;
+        state_.set = set_;
         state_.layer_count = count_;
         state_.level_count = levels_;
         state_.covered = to_cover(layers_, density_);

@@ -15,13 +15,15 @@ struct NextLayers {
 
 /// Makes a state that has lost its set and its covered field one of these layers again; null, or a
 /// state of no set: it begins anew.
-void restore_set(LayerState& state, const Layers* layers, const Field& density) noexcept;
+void restore_set(LayerState& state, const std::shared_ptr<const Layers>& layers,
+                 const Field& density) noexcept;
 
 /// Levels nest, so the SCP lies between two of them. Labels cover the density: those that the SCP
 /// may be in count as free, the others as solid.
 class Tissues {
   public:
-    Tissues(const Layers& layers, LayerState& state, Proxy& proxy, const Field& density);
+    Tissues(const std::shared_ptr<const Layers>& layers, LayerState& state, Proxy& proxy,
+            const Field& density);
 
     /// Inside one of so many layers, the first ones, is inside all before it.
     int nested() const { return levels_; }
@@ -91,6 +93,7 @@ class Tissues {
     bool leave_labels(const Shares& shares);
     void close_labels(const ProxyUpdate& update, double farthest);
 
+    const std::shared_ptr<const Layers>& set_;
     const Layers& layers_;
     const int count_, levels_;
     LayerState& state_;

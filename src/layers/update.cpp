@@ -17,9 +17,9 @@ using enum HapticProperty;
 
 class LayersTick {
   public:
-    LayersTick(const Layers& layers, LayerState& state, Proxy& proxy, const Field& density,
-               const LayerInput& input, StepObserver observer)
-        : layers_(layers),
+    LayersTick(const std::shared_ptr<const Layers>& layers, LayerState& state, Proxy& proxy,
+               const Field& density, const LayerInput& input, StepObserver observer)
+        : layers_(*layers),
           state_(state),
           density_(density),
           tissues_(layers, state, proxy, density),
@@ -317,8 +317,9 @@ class LayersTick {
 
 }  // namespace
 
-LayersUpdate update_layers(const Layers& layers, LayerState& state, Proxy& proxy,
-                           const Field& field, const LayerInput& input, StepObserver observer) {
+LayersUpdate update_layers(const std::shared_ptr<const Layers>& layers, LayerState& state,
+                           Proxy& proxy, const Field& field, const LayerInput& input,
+                           StepObserver observer) {
     return LayersTick(layers, state, proxy, field, input, observer).run();
 }
 

@@ -94,6 +94,7 @@ bool is_finite(const ForceState& force) {
     return std::isfinite(force.time) && std::isfinite(force.ramp_begin) && force.hand.allFinite() &&
            force.velocity.allFinite() && force.force.allFinite() && is_unit(force.orientation) &&
            force.angular_velocity.allFinite() && force.torque.allFinite() &&
+           std::isfinite(force.spring) && std::isfinite(force.turning_spring) &&
            force.motors.warmth >= 0 && std::isfinite(force.motors.warmth) &&
            std::isfinite(force.motors.time) && std::isfinite(force.motors.force);
 }
@@ -147,9 +148,11 @@ void halt(Session& session, SessionPoint& point) noexcept {
     renderer.starts_inside = false;
     point.proxy = renderer.proxy;
     point.isovalue_without_layers = renderer.isovalue_without_layers;
+    point.drawn_to = renderer.drawn_to;
     point.force = renderer.force;
-    point.layers = renderer.layers.set == settings.layers.get() ? renderer.layers : LayerState{};
+    point.layers = renderer.layers.set == settings.layers ? renderer.layers : LayerState{};
     point.layers.covered.reset();
+    point.layers.set.reset();
 }
 
 void check(const SessionPoint& point, const RendererSettings& settings, const FieldKind& field) {
@@ -166,6 +169,8 @@ void check(const SessionPoint& point, const RendererSettings& settings, const Fi
             "the proxy's state is out of range");
     require(!proxy.placed || proxy.interpolation == field.interpolation,
             "the proxy is of another field");
+    require(!point.drawn_to || is_near(*point.drawn_to, field.geometry),
+            "the magnet's point has no place");
     require(is_of(point.layers, settings.layers.get()), "it is of other layers");
     require(is_possible(point.tool, settings.tool.get(), field.geometry), "the tool has no pose");
 }
@@ -181,11 +186,12 @@ void resume(Session& session, const SessionPoint& point) noexcept {
     renderer.proxy = point.proxy;
     renderer.starts_inside = false;
     renderer.isovalue_without_layers = point.isovalue_without_layers;
+    renderer.drawn_to = point.drawn_to;
     renderer.force = point.force;
     renderer.layers = point.layers;
-    restore_set(renderer.layers, settings.layers.get(), renderer.field);
+    restore_set(renderer.layers, settings.layers, renderer.field);
     if (renderer.layers.set) {  // covers the field
-        Tissues(*settings.layers, renderer.layers, renderer.proxy, renderer.field);
+        Tissues(settings.layers, renderer.layers, renderer.proxy, renderer.field);
     }
     if (!renderer.tool_proxy) return;
     halt_tool(*renderer.tool_proxy);

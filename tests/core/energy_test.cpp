@@ -3,160 +3,18 @@
 // own judges the proxy's place.
 #include <gtest/gtest.h>
 
-#include <numbers>
+#include <cmath>
+#include <cstdio>
+#include <sstream>
 
-#include "palpate/session.hpp"
-#include "support/constants.hpp"
-#include "support/edits.hpp"
-#include "support/labelled.hpp"
-#include "support/layer.hpp"
-#include "support/press.hpp"
-#include "support/resident.hpp"
-#include "support/scripted_device.hpp"
+#include "support/combinations.hpp"
 
 using namespace palpate;
 using namespace palpate::support;
 
 namespace energy {
+using namespace support::combinations;
 namespace {
-
-enum class Surfaces { level, levels, labels, both };
-enum class Touching { point, rod, box };
-enum class Data { plain, edited, between_frames, resident };
-
-struct Combination {
-    Interpolation field;
-    Surfaces surfaces;
-    Touching tool;
-    Data data;
-};
-
-std::vector<Combination> all_combinations() {
-    std::vector<Combination> all;
-    for (const Data data : {Data::plain, Data::edited, Data::between_frames, Data::resident}) {
-        for (const auto field : {Interpolation::linear, Interpolation::cubic}) {
-            for (const Surfaces surfaces :
-                 {Surfaces::level, Surfaces::levels, Surfaces::labels, Surfaces::both}) {
-                all.push_back({field, surfaces, Touching::point, data});
-            }
-        }
-        for (const Touching tool : {Touching::rod, Touching::box}) {
-            all.push_back({Interpolation::cubic, Surfaces::level, tool, data});
-        }
-    }
-    return all;
-}
-
-std::ostream& operator<<(std::ostream& out, const Combination& of) {
-    const std::array<const char*, 4> surfaces{"level", "levels", "labels", "both"};
-    const std::array<const char*, 3> tools{"point", "rod", "box"};
-    const std::array<const char*, 4> data{"plain", "edited", "between_frames", "resident"};
-    return out << name_of(of.field) << '_' << surfaces[std::size_t(of.surfaces)] << '_'
-               << tools[std::size_t(of.tool)] << '_' << data[std::size_t(of.data)];
-}
-
-/// In noise a body has room above a higher level only.
-double level_of(Touching tool) {
-    return tool == Touching::point ? 128.5 : 165.5;
-}
-
-/// Samples of two bricks of a large grid, the border between which lies at x = 64.
-const Index3 size(80, 24, 24);
-const Vec3 middle(64, 12, 12);
-
-/// The samples of a combination; of resident ones, bricks come and go.
-class Source {
-  public:
-    Source(Data data, std::uint64_t seed)
-        : random_(seed),
-          volume_(noise_volume<std::uint8_t>(grid(size), seed, 0, 256)),
-          part_(volume_) {
-        samples_ = std::make_shared<const Samples>(volume_);
-        if (data == Data::between_frames) {
-            samples_ = std::make_shared<const Samples>(std::vector<Frame>{
-                {0, volume_}, {1, noise_volume<std::uint8_t>(grid(size), seed + 1, 0, 256)}});
-        }
-        for (int i = 0; data == Data::edited && i < 8; ++i) {
-            samples_ =
-                edited(samples_, random_edit(random_, grid(size), SampleType::uint8)).samples;
-        }
-        part_.add_all();
-        if (data == Data::resident) samples_ = part_.samples();
-    }
-    const std::shared_ptr<const Samples>& samples() const { return samples_; }
-    void come_and_go(Session& session) {
-        if (!samples_->resident() || !random_.chance(0.003)) return;
-        part_.change(random_, 0.2);
-        samples_ = part_.samples();
-        apply(session, command::Samples{samples_});
-    }
-
-  private:
-    Random random_;
-    Volume volume_;
-    PartOf part_;
-    std::shared_ptr<const Samples> samples_;
-};
-
-std::shared_ptr<const Layers> layers_of(Surfaces surfaces) {
-    auto layers = std::make_shared<Layers>();
-    const int levels = surfaces == Surfaces::labels ? 0 : 3;
-    for (int i = 0; i < levels; ++i) {
-        layers->layers.push_back(layer_of("level " + std::to_string(i), 100.5 + 25 * i,
-                                          0.4 + 0.5 * i, i == 2 ? infinity : 0.5));
-    }
-    if (surfaces == Surfaces::levels) return layers;
-    for (int i = 1; i <= 3; ++i) {
-        layers->layers.push_back(
-            layer_of("label " + std::to_string(i), i, 0.4 * i, i == 3 ? infinity : 0.4));
-    }
-    layers->by_label = true;
-    layers->levels_beside_labels = std::size_t(levels);
-    const Geometry geometry = grid({54, 16, 16}, Vec3::Constant(1.5), {-0.5, 0.5, 0.2});
-    layers->labels = numbered_labels(random_labels(9, 3, geometry), layers->layers,
-                                     layers->levels_beside_labels);
-    return layers;
-}
-
-RendererSettings settings_of(const Combination& of) {
-    RendererSettings settings = at_once();
-    settings.force.limit = settings.device.maximum_force = 1e6;
-    settings.device.physical_damping = 1;
-    settings.device.maximum_torque = 1e6;
-    settings.device.physical_rotational_damping = 1e3;
-    settings.force.torque_rate_limit = infinity;
-    if (of.surfaces != Surfaces::level) settings.layers = layers_of(of.surfaces);
-    if (of.tool == Touching::rod) settings.tool = std::make_shared<const Tool>(rod_tool(3, 1));
-    if (of.tool == Touching::box) {
-        settings.tool = std::make_shared<const Tool>(box_tool({2, 2, 1}, 1));
-    }
-    return settings;
-}
-
-/// A closed path, of which the turn is closed as well.
-struct Loop {
-    Vec3 centre;
-    std::array<Vec3, 4> sines, cosines, turns;
-
-    Loop(Random& random, const Vec3& at) : centre(at) {
-        for (int i = 0; i < 4; ++i) {
-            sines[i] = 3.0 / (1 + i) * random.uniform(0, 1) * random.direction();
-            cosines[i] = 3.0 / (1 + i) * random.uniform(0, 1) * random.direction();
-            turns[i] = 0.6 / (1 + i) * random.uniform(0, 1) * random.direction();
-        }
-    }
-    DeviceReading at(double part) const {
-        DeviceReading reading = ready_at(centre);
-        Vec3 turn = Vec3::Zero();
-        for (int i = 0; i < 4; ++i) {
-            const double phase = 2 * std::numbers::pi * (i + 1) * part;
-            reading.position += std::sin(phase) * sines[i] + (std::cos(phase) - 1) * cosines[i];
-            turn += std::sin(phase) * turns[i];
-        }
-        reading.orientation = turned(Quaternion::Identity(), turn).toRotationMatrix();
-        return reading;
-    }
-};
 
 /// The work of force and torque on the hand, beyond what springs had stored where it began [N mm].
 class Meter {
@@ -165,7 +23,8 @@ class Meter {
         const Quaternion turn(reading.orientation);
         if (tick.proxy.status == UpdateStatus::waiting ||
             tick.proxy.status == UpdateStatus::recovering) {
-            running_ = false;  // what comes next is another contact
+            // Another contact follows.
+            running_ = false;
         } else if (!running_) {
             running_ = true;
             gained_ = -stored(tick);
@@ -203,8 +62,7 @@ struct Tally {
 /// How far the proxy, or the deepest point of the tool, is where it may not be.
 double beyond(const Renderer& renderer, const Layers& of_level, const Tick& tick) {
     const RendererSettings& settings = renderer.settings;
-    const TouchedField touched{renderer.field, settings.layers ? *settings.layers : of_level,
-                               renderer.layers};
+    const TouchedField touched = touched_by(renderer, of_level);
     if (!settings.tool) return touched.beyond(tick.proxy.scp);
     double worst = -HUGE_VAL;
     for (const Vec3& point : settings.tool->points()) {
@@ -217,14 +75,11 @@ double beyond(const Renderer& renderer, const Layers& of_level, const Tick& tick
 void go_round(const Combination& of, std::uint64_t seed, int steps, int budget, Tally& tally) {
     Random random(seed);
     Source source(of.data, seed);
-    Layers of_level;
-    of_level.layers.push_back(layer_of("level", level_of(of.tool), 1, infinity));
-    Field field(source.samples(), Solid::above, 0, of.field);
-    field.set_time(0.4);
-    RendererSettings settings = settings_of(of);
+    const Layers of_level = level_alone(of.tool);
+    RendererSettings settings = settings_for(of);
     settings.proxy.step_budget = budget;
-    Session session{make_renderer(field, level_of(of.tool), settings), {.fastest_hand = infinity}};
-    const Loop loop(random, middle + random.uniform(0, 4) * random.direction());
+    Session session = session_on(source, of, settings);
+    const Loop loop(random, source_middle + random.uniform(0, 4) * random.direction());
     Meter meter;
     for (int i = 0; i <= 2 * steps; ++i) {
         source.come_and_go(session);
@@ -286,7 +141,7 @@ TEST(EnergyAtTheLimit, is_not_made_by_the_two_springs_of_a_tool) {
     const Field field(volume_of<float>(grid({48, 48, 48}), [](const Index3& i) { return i[2]; }),
                       Solid::above, 0, Interpolation::cubic);
     RendererSettings settings =
-        settings_of({Interpolation::cubic, Surfaces::level, Touching::point, Data::plain});
+        settings_for({Interpolation::cubic, Surfaces::level, Touching::point, Data::plain});
     settings.tool = std::make_shared<const Tool>(box_tool({20, 10, 5}, 2.5));
     constexpr int steps = 4000;
     std::array<double, 2> most{};  // by which limit it is [N mm]
@@ -311,6 +166,55 @@ TEST(EnergyAtTheLimit, is_not_made_by_the_two_springs_of_a_tool) {
     for (std::size_t i = 0; i < 2; ++i) {
         EXPECT_LE(most[i] / 1000, 1e-6);
         EXPECT_GT(limited[i], 10000);
+    }
+}
+
+/// Surfaces of all kinds round (24, 24, 24), at level 88.
+std::array<Volume, 4> bodies() {
+    const auto made = [](auto&& distance) {
+        return volume_of<float>(grid(cube(48)), [&](const Index3& i) {
+            return 100 - distance(Vec3(i.cast<double>() - Vec3::Constant(24)));
+        });
+    };
+    return {made([](const Vec3& at) { return at.norm(); }),
+            made([](const Vec3& at) { return Vec3(0.5 * at[0], at[1], at[2]).norm(); }),
+            made([](const Vec3& at) { return at.cwiseAbs().maxCoeff(); }),
+            noise_volume<float>(grid(cube(48)), 3, 60, 110)};
+}
+
+/// The first time round, the hand comes to where the magnet holds it.
+TEST(EnergyOfTheMagnet, is_not_made_over_closed_paths_of_the_hand) {
+    for (const Volume& body : bodies()) {
+        for (const auto interpolation : {Interpolation::linear, Interpolation::cubic}) {
+            double most = -HUGE_VAL;
+            int drawn = 0;
+            for (int seed = 0; seed < scaled(20); ++seed) {
+                Random random(std::uint64_t(seed) + 1);
+                RendererSettings settings =
+                    settings_for({interpolation, Surfaces::level, Touching::point, Data::plain});
+                settings.force.magnet = {2, 0.5};
+                Session session{
+                    make_renderer(Field(body, Solid::above, 0, interpolation), 88, settings),
+                    {.fastest_hand = infinity}};
+                const Loop loop(random, Vec3::Constant(24) + 13 * random.direction());
+                constexpr int steps = 6000;
+                double work = 0;
+                Tick last;
+                for (int i = 0; i <= 3 * steps; ++i) {
+                    const DeviceReading reading = loop.at(double(i) / steps);
+                    const Tick tick = advance(session, (i + 1) * period, reading).tick;
+                    const Vec3 way = reading.position - loop.at(double(i - 1) / steps).position;
+                    if (i > steps) work += 0.5 * (last.force + tick.force).dot(way);
+                    drawn += tick.proxy.mode == Mode::free && !tick.force.isZero(0);
+                    last = tick;
+                }
+                most = std::max(most, work / 2);
+            }
+            std::printf("[ evidence ] magnet, %s: drawn in %d ticks, gained %.1e J\n",
+                        std::string(name_of(interpolation)).c_str(), drawn, most / 1000);
+            EXPECT_LE(most / 1000, 1e-6);
+            EXPECT_GT(drawn, scaled(2000));
+        }
     }
 }
 

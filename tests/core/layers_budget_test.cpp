@@ -13,9 +13,9 @@ TEST(LayersBudget, failed_rounds_and_recovery_are_taken_from_the_budget_of_the_t
     for (const bool cubic : {false, true}) {
         TestField test = noise_field();
         if (cubic) test.field = smooth(test.field);
-        Layers layers;
+        const auto layers = std::make_shared<Layers>();
         for (int i = 0; i < 8; ++i) {
-            layers.layers.push_back(layer_of(std::to_string(i), 60 + 15 * i, 0.5, 0.01));
+            layers->layers.push_back(layer_of(std::to_string(i), 60 + 15 * i, 0.5, 0.01));
         }
         Hand hand(test.field.geometry(), 7);
         Proxy proxy;

@@ -278,7 +278,7 @@ TEST(LayersChanges, moved_levels_push_the_proxy_like_an_isovalue) {
     one.to(at_depth(19));
     for (const double level : {18.0, 10.0, 25.0}) {
         const auto moved = std::make_shared<Layers>(surfaces({level, 40}, 0.5, 5));
-        ASSERT_TRUE(keep_for(one.renderer.layers, *one.renderer.settings.layers, *moved));
+        ASSERT_TRUE(keep_for(one.renderer.layers, moved));
         one.renderer.settings.layers = moved;
         const Tick tick = one.to(at_depth(19));
         EXPECT_EQ(tick.proxy.status, UpdateStatus::done);

@@ -134,6 +134,20 @@ TEST(LayersExchange, nothing_of_the_set_before_is_held) {
     }
 }
 
+TEST(LayersExchange, a_set_is_not_taken_for_the_one_whose_memory_it_got) {
+    Live live;
+    std::shared_ptr<const Layers>& set = live.session.renderer.settings.layers;
+    set = levels({10, 20, 30});
+    EXPECT_EQ(live.go(1, 25).layers.inside, 2);
+    const Layers next = *levels({26, 27, 40});
+    set.reset();
+    set = std::make_shared<const Layers>(next);
+    const Tick tick = live.at(25);
+    EXPECT_EQ(tick.layers.inside, 0);
+    EXPECT_EQ(tick.layers.punctured, 0);
+    EXPECT_EQ(tick.proxy.scp, tick.proxy.hip);
+}
+
 TEST(LayersExchange, new_samples_replace_those_under_the_labels_at_once) {
     Live live;
     live.use(labels(1, 40, 20, {20}));

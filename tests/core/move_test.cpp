@@ -64,7 +64,7 @@ Case random_case(const Field& field, Random& random) {
     return {point, isovalue, contact, random_vector(site, random)};
 }
 
-bool same_bits(const Vec3& a, const Vec3& b) {
+bool equal_bits(const Vec3& a, const Vec3& b) {
     return std::bit_cast<std::array<std::uint64_t, 3>>(std::array{a[0], a[1], a[2]}) ==
            std::bit_cast<std::array<std::uint64_t, 3>>(std::array{b[0], b[1], b[2]});
 }
@@ -92,7 +92,7 @@ TEST(Move, the_best_move_equals_the_general_projection_bit_for_bit) {
             const Move fast = best_move(site, on, c.contact, c.h);
             const Move slow = best_of_all(site, on, c.contact, c.h);
             ASSERT_TRUE(same_tetrahedron(fast.tetrahedron, slow.tetrahedron));
-            ASSERT_TRUE(same_bits(fast.step, slow.step))
+            ASSERT_TRUE(equal_bits(fast.step, slow.step))
                 << fast.step.transpose() << " != " << slow.step.transpose();
             ASSERT_EQ(fast.gain, slow.gain);
             ASSERT_EQ(fast.walls, slow.walls);

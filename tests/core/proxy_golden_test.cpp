@@ -83,6 +83,7 @@ std::uint64_t stroke(const TestField& test, bool by_label, bool with_needle, dou
     Layers layers = golden_layers(test, by_label);
     if (with_needle) layers.needle = Needle{};
     for (Layer& layer : layers.layers) layer[HapticProperty::drag] = 0.05;
+    const auto set = std::make_shared<const Layers>(std::move(layers));
     Hand hand(test.field.geometry(), 103);
     Proxy proxy;
     proxy.isovalue = test.isovalue;
@@ -94,7 +95,7 @@ std::uint64_t stroke(const TestField& test, bool by_label, bool with_needle, dou
     for (int i = 0; i < 2000; ++i) {
         input.hip = hand.next();
         input.time = 0.001 * i;
-        const LayersUpdate r = update_layers(layers, state, proxy, test.field, input);
+        const LayersUpdate r = update_layers(set, state, proxy, test.field, input);
         hash.add(proxy);
         hash.add(r.pull);
         hash.add(r.force.stiffness);

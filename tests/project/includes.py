@@ -7,7 +7,7 @@ import re
 import repository
 
 # The flow. `surface` looks at the field from the side: no stage may include it.
-STAGES = ("names progress setting volume tool mesh_tool tool_body samples field edit editor lattice cubic density proxy tool_proxy "
+STAGES = ("names progress volume tool mesh_tool tool_body samples field edit editor lattice cubic density proxy tool_proxy "
           "penetrability force layers reach renderer exchange device session settings servo").split()
 OBSERVERS = {"surface": "density"}  # name -> last stage that it may include
 UMBRELLA = "palpate"                # include/palpate/palpate.hpp, for users of the library

@@ -67,7 +67,7 @@ inline const std::array<PaperTetrahedron, 24>& paper_tetrahedra() {
 inline double paper_sample(const Field& field, const Index3& at) {
     const bool inside =
         (at.array() >= 0).all() && (at.array() < field.geometry().size.array()).all();
-    return inside ? field.volume().sample(at) : field.background();
+    return inside ? field.samples().sample(at, field.moment()) : field.background();
 }
 
 inline Eigen::Matrix<double, 8, 1> paper_samples(const Field& field, const Index3& cell) {

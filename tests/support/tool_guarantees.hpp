@@ -32,13 +32,20 @@ class ToolGuarantees {
         : field_(field), settings_(settings), random_(7) {}
 
     ToolUpdate update(ToolProxy& proxy, const Pose& hand) {
-        const bool was_free = proxy.placed && !inside_;
-        const Pose before = proxy.pose;
-        poses_.clear();
-        const PoseObserver observer{take, this};
-        const ToolUpdate r = update_tool(proxy, field_, hand, settings_, observer);
-        check(proxy, before, hand, r, was_free);
+        const ToolState before = proxy;
+        const PoseObserver every = observer();
+        const ToolUpdate r = update_tool(proxy, field_, hand, settings_, every);
+        judge(proxy, before, hand, r);
         return r;
+    }
+    /// Of one update, which judge() then judges.
+    PoseObserver observer() {
+        poses_.clear();
+        return {take, this};
+    }
+    void judge(const ToolProxy& proxy, const ToolState& before, const Pose& hand,
+               const ToolUpdate& r) {
+        check(proxy, before.pose, hand, r, before.placed && !inside_);
     }
     const ToolTally& tally() const { return tally_; }
     void print(const std::string& name) const {
@@ -55,6 +62,7 @@ class ToolGuarantees {
     }
     /// Of one point's way; all of them is too slow for tools of many points.
     double share_checked = 1;
+    double share_slow = 0.01;  ///< of chords, by the reference as well
 
   private:
     static void take(const Pose& pose, void* self) {
@@ -129,7 +137,7 @@ class ToolGuarantees {
             if (share_checked < 1 && !random_.chance(share_checked)) continue;
             const Vec3 a = index_from_physical(geometry, physical_from_tool(from, point));
             const Vec3 b = index_from_physical(geometry, physical_from_tool(to, point));
-            const bool slow = random_.chance(0.01);
+            const bool slow = random_.chance(share_slow);
             const double most = double(greatest_on_cubic_segment(
                 a, b, [&](const Vec3l& index) { return excess(index, proxy.isovalue, slow); }));
             ++tally_.chords;

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "palpate/edit.hpp"
-#include "palpate/setting.hpp"
+#include "palpate/names.hpp"
 
 namespace palpate::run {
 
