@@ -162,7 +162,8 @@ int why_no_file_in(const fs::path& folder) {
     // Not all file systems have files without a name.
     const fs::path path = temporary_in(folder);
     const int file = create_to_write(path);
-    if (file < 0) return errno == EEXIST ? 0 : errno;
+    if (file < 0 && errno == EEXIST) return 0;
+    if (file < 0) return errno == ENOENT ? ENOTSUP : errno;  // the folder is there
     ::close(file);
     ::unlink(path.c_str());
     return 0;
