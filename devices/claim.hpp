@@ -1,6 +1,7 @@
 // A physical device serves one hand of a process, and is open once.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <utility>
@@ -31,19 +32,24 @@ const void* opening_hand();
 class Claim {
   public:
     /// `device` tells it from all others of the backend, as in "Inverse3 049D at 127.0.0.1".
-    /// Throws DeviceError if another hand has it.
+    /// Throws DeviceError if another hand has it, or if leave() was called for it.
     explicit Claim(std::string device, const void* hand = opening_hand());
     ~Claim();
-    Claim(Claim&& other) noexcept : device_(std::exchange(other.device_, {})) {}
+    Claim(Claim&& other) noexcept
+        : device_(std::exchange(other.device_, {})), number_(other.number_) {}
     Claim& operator=(Claim&&) = delete;
 
-    /// For a device that cannot be closed when its hand goes: no hand has it until this ends.
-    void leave();
+    /// For a device that cannot be closed when its hand goes, or whose opening was stopped before
+    /// its driver returned: no hand has it until this ends.
+    void leave() const { leaving()(); }
+    /// leave() as a function that may be called later, by any thread, also after the end of this.
+    std::function<void()> leaving() const;
 
     const std::string& device() const { return device_; }
 
   private:
     std::string device_;  // empty: moved away
+    std::uint64_t number_ = 0;
 };
 
 }  // namespace palpate::devices

@@ -23,6 +23,7 @@
 #include <stdexcept>
 
 #include "io/system/leftovers.hpp"
+#include "io/system/system.hpp"
 
 namespace palpate::io {
 namespace {
@@ -190,7 +191,7 @@ std::byte* make_file(const std::filesystem::path& path, const LiveHeader& header
     if (error != 0) fail(error);
     const std::vector<std::byte> head = bytes_of(header);
     std::memcpy(mapped, head.data(), head.size());
-    if (rename(unfinished.c_str(), path.c_str()) != 0) {
+    if (!replace_synced(unfinished, path)) {
         error = errno;
         munmap(mapped, bytes);
         fail(error);

@@ -37,14 +37,16 @@ SurfaceMesh mesh_from(const nlohmann::json& done, const Descriptor& memory) {
 
 }  // namespace
 
-SurfaceMesh read_mesh(const std::filesystem::path& path, const OnProgress& progress) {
+SurfaceMesh read_mesh(const std::filesystem::path& path, const OnProgress& progress,
+                      std::uint64_t most_memory) {
     check_readable(path);
     if (std::filesystem::is_directory(path)) {
         throw InputError(path.string() + ": is a folder; give a mesh file");
     }
-    const nlohmann::json request = {
-        {"caller", getpid()},
-        {"own_memory", std::min(machine_memory(), own_memory(bytes_in(path), 64))}};
+    if (most_memory == 0) {
+        most_memory = std::min(machine_memory(), own_memory(bytes_in(path), 64));
+    }
+    const nlohmann::json request = {{"caller", getpid()}, {"own_memory", most_memory}};
     return asked_of_helper(path, [&] {
         const Descriptor memory = shared_memory();
         const TimeLimits limits(0, bytes_in(path));

@@ -67,7 +67,7 @@ std::vector<Vec3> parse_tool_points(std::string_view text, const std::string& na
     return points;
 }
 
-ToolSpec tool_spec_from(const std::string& text, const OnProgress& progress) {
+ToolSpec tool_spec_from(const std::string& text, const OnProgress& progress, std::uint64_t memory) {
     const auto colon = text.find(':');
     const std::string name = text.substr(0, colon);
     const bool has_sizes = colon != std::string::npos;
@@ -92,7 +92,7 @@ ToolSpec tool_spec_from(const std::string& text, const OnProgress& progress) {
         return PointsSpec{parse_tool_points(read_text(text, progress), text)};
     }
     if (names_a_mesh(text)) {
-        SurfaceMesh mesh = read_mesh(text, progress);
+        SurfaceMesh mesh = read_mesh(text, progress, memory);
         return MeshSpec{std::make_shared<const ToolShape>(
             ToolShape{std::move(mesh.vertices), std::move(mesh.triangles)})};
     }

@@ -174,7 +174,9 @@ std::string Data::save(const std::filesystem::path& path, const io::Progress& pr
     if (streamer_) return save_edits(path, progress);
     Field now = linear_field(start_);
     update(now);
-    const Volume volume = flattened(now.samples(), now.moment());
+    const Volume volume = flattened(now.samples(), now.moment(), [&](double) {
+        if (progress) progress(0);
+    });
     if (is_zarr(path)) {
         stream::ConvertOptions options;
         options.progress = progress;

@@ -210,7 +210,6 @@ void Run::launch(Session session) {
     lost_before_ = 0;
 }
 
-/// The servo first: an edit under way, which detach() waits for, may take seconds.
 void Run::stop_servo() {
     servo_->stop();
     data_->detach(*servo_);

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "palpate/run/streamer.hpp"
 #include "stream/while_telling.hpp"
@@ -22,16 +23,8 @@ constexpr auto brush_interval = 4ms;
 constexpr auto rest = 500ms;
 /// [s] Longest time that one step of the brush makes up for, however late the thread was.
 constexpr double longest_step = 0.1;
-/// How often a full queue of commands is tried again, a millisecond apart.
-constexpr int attempts = 200;
 /// Parts of a store's memory limit: for edits, and for undo.
 constexpr std::uint64_t edits_part = 4, history_part = 8;
-
-/// Samples that an edit needs have to be fetched first.
-struct NotFetched {};
-struct Lacking {
-    Edit edit;
-};
 
 /// Throws Cancelled once the stop is requested, else puts what is done into `made`.
 OnProgress until(const std::stop_token& stop, std::atomic<double>& made) {
@@ -56,6 +49,18 @@ void count_brick(std::uint64_t& bytes, const Samples& samples, std::uint64_t mem
     }
 }
 
+/// Does the work without the lock.
+template <class Lock, class Work>
+auto without(Lock& lock, Work&& work) {
+    struct Again {
+        Lock& lock;
+        ~Again() { lock.lock(); }
+    };
+    lock.unlock();
+    const Again again{lock};
+    return work();
+}
+
 }  // namespace
 
 VolumeEditor::VolumeEditor(std::shared_ptr<const Samples> samples, Pace pace,
@@ -70,11 +75,7 @@ VolumeEditor::VolumeEditor(std::shared_ptr<const Samples> samples, Streamer* str
                            std::uint64_t memory, Pace pace, std::size_t most_versions)
     : streamer_(streamer),
       memory_(memory),
-      editor_(streamer ? Editor(samples, memory / history_part,
-                                [this](const SampleBox& box, std::span<std::byte> out) {
-                                    read(box, out);
-                                })
-                       : Editor(samples)),
+      editor_(streamer ? Editor(samples, memory / history_part) : Editor(samples)),
       versions_{{samples, {}}},
       most_versions_(most_versions),
       forget_at_(std::min(most_versions, first_forgetting)) {
@@ -85,7 +86,10 @@ VolumeEditor::VolumeEditor(std::shared_ptr<const Samples> samples, Streamer* str
 
 VolumeEditor::~VolumeEditor() {
     thread_.request_stop();
-    reading_.request_stop();
+    {
+        const std::scoped_lock lock(mutex_);
+        brushing_.request_stop();
+    }
     if (thread_.joinable()) thread_.join();
 }
 
@@ -108,6 +112,7 @@ std::unique_ptr<Servo> VolumeEditor::attach(Session session, const StartServo& s
 
 void VolumeEditor::detach(const Servo& servo) {
     const std::scoped_lock lock(mutex_);
+    interrupt_brush();
     std::erase_if(hands_, [&](const Hand& hand) { return hand.servo == &servo; });
     if (streamer_) streamer_->detach(servo);
     new_step_ = true;
@@ -116,14 +121,16 @@ void VolumeEditor::detach(const Servo& servo) {
 void VolumeEditor::record(const Servo& servo, const BeginRecording& begin) {
     const std::scoped_lock lock(mutex_);
     if (streamer_) return streamer_->record(servo, begin, history());
+    send_waiting();
     const bool lacks = std::ranges::any_of(
-        hands_, [&](const Hand& hand) { return hand.servo == &servo && hand.lacks; });
+        hands_, [&](const Hand& hand) { return hand.servo == &servo && !hand.waiting.empty(); });
     if (lacks) throw std::runtime_error(takes_no_commands);
     begin(history());
 }
 
 void VolumeEditor::rest_brush(const Servo& servo, const std::shared_ptr<const Tool>& tool) {
     const std::scoped_lock lock(mutex_);
+    interrupt_brush();
     for (Hand& hand : hands_) {
         if (hand.servo != &servo) continue;
         if (hand.tool != tool) hand.body.reset();
@@ -138,6 +145,7 @@ void VolumeEditor::rest_brush(const Servo& servo, const std::shared_ptr<const To
 void VolumeEditor::set_brush(const std::optional<HandBrush>& brush) {
     if (brush) check(*brush);
     const std::scoped_lock lock(mutex_);
+    interrupt_brush();
     if (brush.has_value() != brush_.has_value()) {
         for (Hand& hand : hands_) {
             hand.touch.reset();
@@ -146,14 +154,20 @@ void VolumeEditor::set_brush(const std::optional<HandBrush>& brush) {
         new_step_ = true;
     }
     brush_ = brush;
-    brush_taken_up_.notify_all();
+    has_work_.notify_all();
     set_problem({});
 }
 
-/// An edit under way, which holds the lock, may take seconds.
-VolumeEditor::Lock VolumeEditor::locked(const std::stop_token& stop) {
-    if (!stop.stop_possible()) return Lock(mutex_);
-    Lock lock(mutex_, std::try_to_lock);
+/// What the brush computes at the moment is not used any more. With the lock.
+void VolumeEditor::interrupt_brush() {
+    brushing_.request_stop();
+    brushing_ = {};
+}
+
+/// An edit that begins again, or the start of a servo, may take seconds.
+VolumeEditor::Lock VolumeEditor::locked(std::mutex& mutex, const std::stop_token& stop) {
+    if (!stop.stop_possible()) return Lock(mutex);
+    Lock lock(mutex, std::try_to_lock);
     while (!lock.owns_lock() && !lock.try_lock()) {
         if (stop.stop_requested()) throw stream::Cancelled{};
         std::this_thread::sleep_for(1ms);
@@ -163,31 +177,29 @@ VolumeEditor::Lock VolumeEditor::locked(const std::stop_token& stop) {
 
 void VolumeEditor::apply(const Edit& asked, const OnProgress& progress) {
     stream::while_telling(progress, [&](const std::stop_token& stop, std::atomic<double>& made) {
-        Lock lock = locked(stop);
-        const OnProgress tell = until(stop, made);
-        with_samples(lock, stop, tell, [&] {
-            edit(asked, EditStep::own, tell);
-            new_step_ = true;
-        });
+        Lock lock = locked(mutex_, stop);
+        use(computed(lock, asked, stop, until(stop, made)), asked, EditStep::own);
+        new_step_ = true;
     });
 }
 
 bool VolumeEditor::undo(const OnProgress& progress) {
     return stream::while_telling(progress, [&](const std::stop_token& stop) {
-        const Lock lock = locked(stop);
+        const Lock lock = locked(mutex_, stop);
         return go_to(editor_.undo());
     });
 }
 
 bool VolumeEditor::redo(const OnProgress& progress) {
     return stream::while_telling(progress, [&](const std::stop_token& stop) {
-        const Lock lock = locked(stop);
+        const Lock lock = locked(mutex_, stop);
         return go_to(editor_.redo());
     });
 }
 
 /// Sends the version that the editor went back or forth to.
 bool VolumeEditor::go_to(SampleBox changed) {
+    interrupt_brush();
     new_step_ = true;
     for (Hand& hand : hands_) hand.resting = true;
     if (changed.empty()) return false;
@@ -206,22 +218,52 @@ std::uint64_t VolumeEditor::version_of(const std::shared_ptr<const Samples>& sam
     return 0;  // not reached: the editor holds what it made
 }
 
-void VolumeEditor::edit(const Edit& asked, EditStep step, const OnProgress& progress) {
-    const std::uint64_t from = version_of(editor_.samples());
-    edited_bytes_ = bytes_of_edits(*editor_.samples());
-    SampleBox changed;
-    try {
-        changed = editor_.apply(asked, step, progress);
-    } catch (const NotFetched&) {
-        throw Lacking{asked};
+/// Computes an edit without the lock. If the samples have changed meanwhile, it is computed again,
+/// and edits that have not begun yet wait for it: it would never end if they kept coming first.
+/// What it has read is kept for the next time. Throws what edited() and `tell` throw.
+VolumeEditor::Computed VolumeEditor::computed(Lock& lock, const Edit& asked,
+                                              const std::stop_token& stop, const OnProgress& tell) {
+    Fetched fetched;
+    const auto take_turn = [&] { return without(lock, [&] { return locked(turn_, stop); }); };
+    Lock turn = take_turn();
+    turn.unlock();
+    while (true) {
+        const std::shared_ptr<const Samples> before = editor_.samples();
+        Edited made = without(lock, [&] { return compute(before, asked, fetched, stop, tell); });
+        if (stop.stop_requested()) throw stream::Cancelled{};
+        if (editor_.samples() == before) return {version_of(before), std::move(made)};
+        if (!turn.owns_lock()) turn = take_turn();
     }
-    if (changed.empty()) return;
+}
+
+/// Without the lock.
+Edited VolumeEditor::compute(const std::shared_ptr<const Samples>& before, const Edit& asked,
+                             Fetched& fetched, const std::stop_token& stop,
+                             const OnProgress& tell) const {
+    if (!streamer_) return edited(before, asked, {}, tell);
+    std::uint64_t bytes = bytes_of_edits(*before);
+    const auto read = [&](const SampleBox& box, std::span<std::byte> out) {
+        count_brick(bytes, *before, memory_);
+        std::vector<std::byte>& known = fetched[{box.low[0], box.low[1], box.low[2]}];
+        if (known.size() != out.size()) {
+            streamer_->read(box, out, stop);
+            known.assign(out.begin(), out.end());
+        }
+        std::ranges::copy(known, out.begin());
+    };
+    return edited(before, asked, read, tell);
+}
+
+/// With the lock, since before the samples could have changed again. False if nothing changes.
+bool VolumeEditor::use(Computed computed, const Edit& asked, EditStep step) {
+    if (editor_.take(std::move(computed.edited), step).empty()) return false;
     last_version_ = streamer_ ? streamer_->next_version() : last_version_ + 1;
     command::Samples made{editor_.samples(), last_version_,
-                          std::make_shared<const Recipe>(EditOf{from, asked})};
+                          std::make_shared<const Recipe>(EditOf{computed.from, asked})};
     versions_.push_back({editor_.samples(), {nullptr, made.version, made.recipe}});
     if (versions_.size() > forget_at_) forget_versions();
     send(made);
+    return true;
 }
 
 /// Forgets versions that neither undo() nor redo() leads to and that no other one was made of; of
@@ -260,7 +302,7 @@ void VolumeEditor::set_problem(const std::string& problem) {
     publish();
 }
 
-/// To every servo, even if one of them takes no commands.
+/// To every servo. One that takes no commands at the moment gets it later.
 void VolumeEditor::send(const command::Samples& command) {
     publish();
     if (streamer_) {
@@ -268,67 +310,21 @@ void VolumeEditor::send(const command::Samples& command) {
         streamer_->leave_room(bytes_of_edits(*command.samples) + editor_.history_bytes());
         return;
     }
-    bool refused = false;
+    for (Hand& hand : hands_) hand.waiting.push_back(command);
+    if (!send_waiting()) has_work_.notify_all();
+}
+
+/// False if a servo takes no commands at the moment.
+bool VolumeEditor::send_waiting() {
+    bool sent = true;
     for (Hand& hand : hands_) {
-        int attempt = 0;
-        while (!hand.servo->send(command) && ++attempt < attempts) std::this_thread::sleep_for(1ms);
-        hand.lacks = attempt == attempts;
-        refused |= hand.lacks;
-    }
-    if (refused) throw std::runtime_error(takes_no_commands);
-}
-
-/// Does work(), which makes edits, again and again until it lacks no samples. They are read without
-/// the lock: a network must hold nobody up who holds or needs it. They are of this call alone, so
-/// that nobody else's edit can take them away.
-template <class Work>
-void VolumeEditor::with_samples(Lock& lock, const std::stop_token& stop, const OnProgress& tell,
-                                Work&& work) {
-    Fetched fetched;
-    while (true) {
-        fetched_ = &fetched;
-        try {
-            return work();
-        } catch (const Lacking& lacking) {
-            const std::shared_ptr<const Samples> samples = editor_.samples();
-            lock.unlock();
-            try {
-                fetch(samples, lacking.edit, fetched, stop, tell);
-            } catch (...) {
-                lock.lock();
-                throw;
-            }
-            lock.lock();
+        if (hand.servo->has_ended()) hand.waiting.clear();
+        while (!hand.waiting.empty() && hand.servo->send(hand.waiting.front())) {
+            hand.waiting.pop_front();
         }
+        sent = sent && hand.waiting.empty();
     }
-}
-
-/// Without the lock: all that an edit of these samples reads. Stops with the caller or the editor.
-void VolumeEditor::fetch(const std::shared_ptr<const Samples>& samples, const Edit& asked,
-                         Fetched& fetched, const std::stop_token& stop,
-                         const OnProgress& tell) const {
-    std::stop_source either;
-    const auto end = [&] { either.request_stop(); };
-    const std::stop_callback with_editor(reading_.get_token(), end), with_caller(stop, end);
-    std::uint64_t bytes = bytes_of_edits(*samples);
-    const auto get = [&](const SampleBox& box, std::span<std::byte> out) {
-        count_brick(bytes, *samples, memory_);
-        std::vector<std::byte>& read = fetched[{box.low[0], box.low[1], box.low[2]}];
-        if (read.size() != out.size()) {
-            streamer_->read(box, out, either.get_token());
-            read.assign(out.begin(), out.end());
-        }
-        std::ranges::copy(read, out.begin());
-    };
-    (void)edited(samples, asked, get, tell);
-}
-
-/// Samples of a brick that is edited for the first time.
-void VolumeEditor::read(const SampleBox& box, std::span<std::byte> out) {
-    const auto found = fetched_->find({box.low[0], box.low[1], box.low[2]});
-    if (found == fetched_->end() || found->second.size() != out.size()) throw NotFetched{};
-    count_brick(edited_bytes_, *editor_.samples(), memory_);
-    std::ranges::copy(found->second, out.begin());
+    return sent;
 }
 
 void VolumeEditor::run(const std::stop_token& stop) {
@@ -336,7 +332,7 @@ void VolumeEditor::run(const std::stop_token& stop) {
         std::this_thread::sleep_for(brush_interval);
         {
             std::unique_lock lock(mutex_);
-            brush_taken_up_.wait(lock, stop, [this] { return brush_.has_value(); });
+            has_work_.wait(lock, stop, [this] { return brush_ || !send_waiting(); });
         }
         step(std::chrono::steady_clock::now());
     }
@@ -344,18 +340,24 @@ void VolumeEditor::run(const std::stop_token& stop) {
 
 void VolumeEditor::step(std::chrono::steady_clock::time_point now) {
     Lock lock(mutex_);
+    send_waiting();
+    const std::stop_token stop = brushing_.get_token();
     try {
-        with_samples(lock, {}, {}, [&] {
-            for (Hand& hand : hands_) brush(hand, now);
-        });
-    } catch (const stream::Cancelled&) {  // the editor ends
-    } catch (const std::exception& e) {   // no commands taken, no memory, nothing to be read
+        // The lock is free while a stroke is computed: hands may be added meanwhile. All else that
+        // changes them interrupts the brush.
+        for (std::size_t i = 0; i < hands_.size(); ++i) brush(lock, i, now, stop);
+    } catch (const stream::Cancelled&) {  // interrupted, or the editor ends
+    } catch (const std::exception& e) {   // no memory, nothing to be read
+        if (stop.stop_requested()) return;
+        interrupt_brush();
         brush_.reset();
         set_problem(std::string("the brush was put down: ") + e.what());
     }
 }
 
-void VolumeEditor::brush(Hand& hand, std::chrono::steady_clock::time_point now) {
+void VolumeEditor::brush(Lock& lock, std::size_t i, std::chrono::steady_clock::time_point now,
+                         const std::stop_token& stop) {
+    Hand& hand = hands_[i];
     if (!brush_) return;
     const auto felt = hand.servo->snapshot();
     if (!felt || felt->number < hand.from) return;
@@ -369,40 +371,51 @@ void VolumeEditor::brush(Hand& hand, std::chrono::steady_clock::time_point now) 
     if (!works) return hand.touch.reset();
     const Touch to{
         {session.tick.proxy.scp, session.tick.tool.proxy}, session.tick.time, felt->number};
-    if (hand.touch && brush_from(*hand.touch, to, hand, session.tick.proxy.isovalue)) {
+    if (hand.touch && brush_to(lock, i, to, session.tick.proxy.isovalue, stop)) {
         last_change_ = now;
     }
     if (now - last_change_ > rest) new_step_ = true;
-    hand.touch = to;
+    hands_[i].touch = to;  // not if it was interrupted: the next stroke begins where this one did
 }
 
-/// Throws std::invalid_argument for a tool that has no body.
-Edit VolumeEditor::edit_of(const Brush& brush, const Touch& from, const Touch& to, Hand& hand) {
-    if (!brush_->as_tool) return edit::Stroke{brush, from.at.position, to.at.position};
-    const Geometry& geometry = hand.field.geometry();
-    if (!hand.body || hand.body->reach() != reach_of(brush, geometry)) {
-        const auto tool = hand.tool ? hand.tool : std::make_shared<const Tool>(point_tool());
-        hand.body = std::make_shared<const ToolBody>(body_for(brush, geometry, tool));
-    }
-    return edit::Sweep{brush, hand.body, from.at, to.at};
-}
-
-/// True if it changed something.
-bool VolumeEditor::brush_from(const Touch& from, const Touch& to, Hand& hand, double isovalue) {
+/// Sweeps the brush of a hand to where it touches now. True if it changed something.
+bool VolumeEditor::brush_to(Lock& lock, std::size_t i, const Touch& to, double isovalue,
+                            const std::stop_token& stop) {
+    const Touch from = *hands_[i].touch;
     const auto brush =
-        brush_at(*brush_, hand.field, isovalue, std::min(to.time - from.time, longest_step));
+        brush_at(*brush_, hands_[i].field, isovalue, std::min(to.time - from.time, longest_step));
     if (!brush) return false;
-    const std::shared_ptr<const Samples> before = editor_.samples();
+    bool changed = false;
     try {
-        edit(edit_of(*brush, from, to, hand), new_step_ ? EditStep::own : EditStep::same);
+        const Edit asked = edit_of(lock, *brush, from.at, to.at, i, stop);
+        std::atomic<double> made{0};
+        Computed stroke = computed(lock, asked, stop, until(stop, made));
+        changed = use(std::move(stroke), asked, new_step_ ? EditStep::own : EditStep::same);
     } catch (const std::invalid_argument& e) {
+        if (stop.stop_requested()) throw stream::Cancelled{};
         set_problem(e.what());  // for example a value on the wrong side of the level felt now
         return false;
     }
     set_problem({});
-    const bool changed = editor_.samples() != before;
     if (changed) new_step_ = false;
     return changed;
+}
+
+/// Throws std::invalid_argument for a tool that has no body. The body is made without the lock.
+Edit VolumeEditor::edit_of(Lock& lock, const Brush& brush, const Pose& from, const Pose& to,
+                           std::size_t i, const std::stop_token& stop) {
+    if (!brush_->as_tool) return edit::Stroke{brush, from.position, to.position};
+    const Geometry geometry = hands_[i].field.geometry();
+    if (!hands_[i].body || hands_[i].body->reach() != reach_of(brush, geometry)) {
+        const auto tool =
+            hands_[i].tool ? hands_[i].tool : std::make_shared<const Tool>(point_tool());
+        auto body = without(lock, [&] {
+            return std::make_shared<const ToolBody>(body_for(brush, geometry, tool));
+        });
+        if (stop.stop_requested()) throw stream::Cancelled{};
+        hands_[i].body = std::move(body);
+    }
+    return edit::Sweep{brush, hands_[i].body, from, to};
 }
 
 EditState VolumeEditor::state() const {

@@ -33,7 +33,7 @@ TEXT
 core=(g++ cmake ninja-build ccache libeigen3-dev libgtest-dev libgmock-dev libbenchmark-dev python3 git)
 python=(python3-dev pybind11-dev python3-numpy python3-pytest python3-nibabel python3-zarr
         python3-h5py python3-pydicom python3-tifffile teem-apps python3-setuptools python3-wheel
-        python3-pip python3-venv python3-dask python3-distributed python3-scipy python3-matplotlib weasyprint mypy)
+        python3-pip python3-venv strace python3-dask python3-distributed python3-scipy python3-matplotlib weasyprint mypy)
 program=("${core[@]}" libinsighttoolkit5-dev libvtk9-dev libcli11-dev libfmt-dev nlohmann-json3-dev
     libgdcm-dev libhdf5-dev libtiff-dev libpugixml-dev libpng-dev zlib1g-dev gnuplot-nox libboost-dev libegl-dev libegl1
     libgl1-mesa-dri libembree-dev libblosc-dev libzstd-dev liblz4-dev libxxhash-dev libcurl4-openssl-dev)

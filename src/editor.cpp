@@ -28,7 +28,11 @@ std::size_t bytes_between(const Samples& before, const Samples& after) {
 
 SampleBox Editor::apply(const Edit& edit, EditStep step, const OnProgress& progress) {
     begun_ |= step == EditStep::own;  // also if this edit fails
-    Edited result = edited(samples_, edit, read_, progress);
+    return take(edited(samples_, edit, read_, progress), step);
+}
+
+SampleBox Editor::take(Edited result, EditStep step) {
+    begun_ |= step == EditStep::own;
     if (result.changed.empty()) return {};
     const bool same = !std::exchange(begun_, false) && undone_from_ > 0 && redo_steps() == 0;
     steps_.resize(undone_from_);

@@ -47,13 +47,28 @@ void copy_brick(const std::byte* brick, const Index3& low, const Geometry& geome
 }
 
 template <class T>
-void blend(const Volume& from, const Volume& to, double weight, std::byte* whole) {
-    const auto a = from.samples<T>();
-    const auto b = to.samples<T>();
-    auto* out = reinterpret_cast<T*>(whole);
+void blend(std::span<const T> a, std::span<const T> b, double weight, T* out) {
     for (std::size_t i = 0; i < a.size(); ++i) {
         const double value = (1 - weight) * double(a[i]) + weight * double(b[i]);
         out[i] = static_cast<T>(std::is_integral_v<T> ? std::nearbyint(value) : value);
+    }
+}
+
+/// All samples at a moment, without edits.
+template <class T>
+void copy_samples(std::span<const Frame> frames, const Moment& moment, T* out,
+                  const OnProgress& progress) {
+    constexpr std::size_t between = std::size_t{1} << 20;
+    const auto from = frames[moment.from].volume.samples<T>();
+    const auto to = frames[moment.to].volume.samples<T>();
+    for (std::size_t at = 0; at < from.size(); at += between) {
+        const std::size_t count = std::min(between, from.size() - at);
+        if (moment.weight > 0) {
+            blend(from.subspan(at, count), to.subspan(at, count), moment.weight, out + at);
+        } else {
+            std::memcpy(out + at, &from[at], count * sizeof(T));
+        }
+        if (progress) progress(double(at) / double(from.size()));
     }
 }
 
@@ -156,7 +171,7 @@ double Samples::sample(const Index3& index, const Moment& moment) const {
     });
 }
 
-Volume flattened(const Samples& samples, const Moment& moment) {
+Volume flattened(const Samples& samples, const Moment& moment, const OnProgress& progress) {
     const Volume& from = samples.frames()[moment.from].volume;
     const bool between = moment.weight > 0;
     const Bricks* bricks = samples.bricks();
@@ -164,20 +179,17 @@ Volume flattened(const Samples& samples, const Moment& moment) {
     if (samples.resident()) return flattened(*ShownEdits(from).of(samples));
 
     const std::shared_ptr<std::byte[]> whole(new std::byte[from.bytes()]);
-    if (between) {
-        const Volume& to = samples.frames()[moment.to].volume;
-        with_type(samples.type(),
-                  [&](auto zero) { blend<decltype(zero)>(from, to, moment.weight, whole.get()); });
-    } else {
-        std::memcpy(whole.get(), from.data(), from.bytes());
-    }
+    with_type(samples.type(), [&](auto zero) {
+        auto* out = reinterpret_cast<decltype(zero)*>(whole.get());
+        copy_samples(samples.frames(), moment, out, progress);
+    });
     const auto put = [&](const Index3& brick, const Brick& edited) {
         copy_brick(edited.samples.get(), brick * Bricks::edge, from.geometry(),
                    size_of(samples.type()), whole.get());
     };
     if (bricks) bricks->for_each(put);
     return {from.geometry(), samples.type(), std::shared_ptr<const void>(whole, whole.get()),
-            from.bytes()};
+            from.bytes(), progress};
 }
 
 std::size_t bytes_apart(const Samples& samples, const Samples& other) {

@@ -48,7 +48,7 @@ run::LevelRange range_from(const std::string& text) {
             io::level_from_text(text.substr(colon + 1))};
 }
 
-void RenderOptions::add_to(CLI::App& command) {
+void RenderOptions::add_to(CLI::App& command, const std::optional<std::uint64_t>& memory) {
     command_ = &command;
     const auto choose = [this](const std::string& name) { given.method = run::named_method(name); };
     command.add_option_function<std::string>("--method", choose, "Proxy method")
@@ -70,8 +70,10 @@ void RenderOptions::add_to(CLI::App& command) {
     command
         .add_option_function<std::string>(
             "--tool",
-            [this](const std::string& text) {
-                given.tool = io::tool_spec_from(tool_ = text, stop_if_interrupted);
+            [this, &memory](const std::string& text) {
+                // Half of what the program may take, as for the chunks of a store.
+                given.tool =
+                    io::tool_spec_from(tool_ = text, stop_if_interrupted, memory.value_or(0) / 2);
             },
             "Touch with a rigid tool: sphere:R, rod:L, needle[:L,R], burr:R, box:X,Y,Z, fingertip "
             "[mm], or a file with points (.csv) or a mesh (.stl, .ply, .obj, .vtp)")

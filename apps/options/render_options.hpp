@@ -19,7 +19,9 @@ struct RenderOptions {
     std::vector<run::LevelRange> ranges;
     std::string labels;  ///< the name of a label volume
 
-    void add_to(CLI::App& command);
+    /// `memory`: where the limit of the program [bytes] will be when the options are read. It
+    /// belongs to an option that was added before.
+    void add_to(CLI::App& command, const std::optional<std::uint64_t>& memory);
     /// What it reads: layers, labels and a tool, each a file, a name, or empty.
     std::vector<std::string> inputs() const { return {layers_, labels, tool_}; }
     /// Once the command line has been read; reads the label volume. Throws std::invalid_argument

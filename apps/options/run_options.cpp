@@ -35,7 +35,7 @@ void RunOptions::add_to(CLI::App& command, For purpose) {
     add_data_options(command);
     add_field_options(command, given.field);
     render.given.force.start_below = run::live_start_below;
-    render.add_to(command);
+    render.add_to(command, source.memory);
     command.get_option("--rate")->description(
         "Updates of proxy and force per second (default: 1000, or 250 with a device that renders "
         "no force)");

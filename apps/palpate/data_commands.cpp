@@ -86,9 +86,9 @@ DataRequest fill(const CommandWords& words, const Volume& volume) {
     };
 }
 
-DataRequest save(const CommandWords& words, const Volume& volume) {
+DataRequest save(const CommandWords& words, const run::Data& now) {
     const std::string path = words.expect(2)[1];
-    run::check_volume_name(path, volume.geometry());
+    now.check_save_name(path);
     return [path](run::Data& data, const Field&, double, const io::Progress&) {
         // A save that has begun is completed after the session, unless Ctrl-C is pressed again.
         return data.save(path, [before = interruptions()](double) {
@@ -179,7 +179,7 @@ DataRequest step(int frames) {
     return silent([frames](run::Data& data) { data.player().step(frames); });
 }
 
-DataRequest data_request(const CommandWords& words, const Volume& volume) {
+DataRequest data_request(const CommandWords& words, const run::Data& now, const Volume& volume) {
     const std::string& name = words.name();
     const bool alone = words.count() == 1;
     if (name == "carve" || name == "add" || name == "smooth" || name == "paint") {
@@ -188,7 +188,7 @@ DataRequest data_request(const CommandWords& words, const Volume& volume) {
     if (name == "fill") return fill(words.as("fill I,J,K[:I,J,K] VALUE"), volume);
     if (name == "undo" && alone) return undo();
     if (name == "redo" && alone) return redo();
-    if (name == "save") return save(words.as("save FILE"), volume);
+    if (name == "save") return save(words.as("save FILE"), now);
     if (name == "play") return play(one_or(words.as("play [SPEED], at most 1000"), 1000));
     if (name == "pause" && alone) return play(0);
     if (name == "step") return step(static_cast<int>(one_or(words.as("step [FRAMES]"), 1e6)));

@@ -44,8 +44,8 @@ using DataRequest = std::function<std::string(run::Data& data, const Field& fiel
 
 /// `carve|add|smooth|paint X,Y,Z[:X,Y,Z] RADIUS [VALUE]`, `fill I,J,K[:I,J,K] VALUE`, `undo`,
 /// `redo`, `save FILE`, `play [SPEED]`, `pause`, `step [FRAMES]`, `seek SECONDS`, `loop on|off`.
-/// Empty for other words.
-DataRequest data_request(const CommandWords& words, const Volume& volume);
+/// Empty for other words. Throws io::OutputError for a file that could not be saved now.
+DataRequest data_request(const CommandWords& words, const run::Data& now, const Volume& volume);
 
 /// `brush KIND RADIUS [RATE [VALUE]]`, or `brush off`, which is nothing.
 std::optional<run::HandBrush> brush_from(const CommandWords& words, const Volume& volume);

@@ -102,7 +102,7 @@ std::string report_html(const Demo& demo, const std::string& images) {
 void add_demo_options(CLI::App& command, DemoOptions& options) {
     options.source.add_to(command, true);
     add_field_options(command, options.field);
-    options.render.add_to(command);
+    options.render.add_to(command, options.source.memory);
     command.option_defaults()->always_capture_default();  // of all that follow
     command.add_option("--depth", options.hand.depth_mm, "Depth below the surface [mm]");
     command.add_option("--picture", options.picture_width, "Width of the picture [pixels]")

@@ -16,10 +16,13 @@
 
 namespace palpate::app {
 
-LiveCommands::LiveCommands(const Field& field, double isovalue, const RendererSettings& settings)
-    : field_(field), isovalue_(isovalue), settings_(settings) {
-    if (settings.penetrability.on) penetrability_ = settings.penetrability;
-    last_layers_ = settings.layers;
+LiveCommands::LiveCommands(const run::Run& run)
+    : data_(&run.data()),
+      field_(run.field()),
+      isovalue_(run.isovalue()),
+      settings_(run.settings()) {
+    if (settings_.penetrability.on) penetrability_ = settings_.penetrability;
+    last_layers_ = settings_.layers;
 }
 
 Penetrability LiveCommands::penetrability_from(const CommandWords& words) const {
@@ -109,7 +112,7 @@ Request LiveCommands::from_words(std::string_view line) {
             brush_from(words.as("brush KIND RADIUS|tool[:BEYOND] [RATE [VALUE]], or brush off"),
                        field_.volume()));
     }
-    if (auto data = data_request(words, field_.volume())) return data;
+    if (auto data = data_request(words, *data_, field_.volume())) return data;
     if (name == "quit" && words.count() == 1) return Quit{};
     if (name == "lift") {
         words.as("lift, without a value").expect(1);
@@ -220,9 +223,10 @@ std::vector<TimedRequest> read_commands(const std::string& path, LiveCommands& c
         std::string time, rest;
         if (!(words >> time)) continue;
         std::getline(words, rest);
-        const auto fail = [&](const std::string& problem) {
-            throw io::InputError(fmt::format("{}, line {}: {}", path, number, problem));
+        const auto told = [&](const std::string& problem) {
+            return fmt::format("{}, line {}: {}", path, number, problem);
         };
+        const auto fail = [&](const std::string& problem) { throw io::InputError(told(problem)); };
         const auto seconds = io::number_from<double>(time);
         if (!seconds || !(*seconds >= 0)) {
             fail(io::quoted(time) +
@@ -240,6 +244,8 @@ std::vector<TimedRequest> read_commands(const std::string& path, LiveCommands& c
             requests.push_back({*seconds, std::move(request)});
         } catch (const std::invalid_argument& e) {
             fail(e.what());
+        } catch (const io::OutputError& e) {
+            throw io::OutputError(told(e.what()));
         }
     }
     return requests;

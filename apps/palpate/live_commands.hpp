@@ -20,13 +20,15 @@ using Request = std::variant<Command, DataRequest, Quit, Help>;
 /// one setting at a time.
 class LiveCommands {
   public:
-    LiveCommands(const Field& field, double isovalue, const RendererSettings& settings);
+    /// The data of `run` must live as long as this.
+    explicit LiveCommands(const run::Run& run);
 
     /// `isovalue 300`, `isovalue 53%`, `stiffness 0.5`, `damping 0.001`, `viscosity 0`,
     /// `friction 0.3,0.2`, `penetrability off`, `penetrability threshold PT [MINIMUM]`,
     /// `penetrability ranges PT LOW:HIGH ...`, `layers off`, `layers FILE|NAME`, `forces on|off`,
     /// `freeze on|off`, `clutch on|off`, `scale 1.5`, `quit`; and those of data_commands.hpp.
-    /// Throws std::invalid_argument, saying what was expected.
+    /// Throws std::invalid_argument, saying what was expected, and io::OutputError for a file that
+    /// could not be saved now.
     Request from_words(std::string_view line);
 
     /// The request of a key; nothing for a key without a meaning. See key_help().
@@ -40,6 +42,7 @@ class LiveCommands {
     Command setting_from(const CommandWords& words, RendererSettings& next) const;
     DataRequest take_up(const std::optional<run::HandBrush>& brush);
 
+    const run::Data* data_;
     Field field_;
     double isovalue_;
     RendererSettings settings_;
@@ -62,7 +65,7 @@ struct WhichHand {
 /// Lines `SECONDS WORDS`, in order of time; # begins a comment. Those of a hand: `SECONDS hand N
 /// WORDS` are the hand's that they name, the others are for all hands, but what is done once, as
 /// edits, is the first one's. Throws io::InputError with the line for words that are not
-/// understood.
+/// understood, and io::OutputError for a file that could not be saved now.
 std::vector<TimedRequest> read_commands(const std::string& path, LiveCommands& commands,
                                         const WhichHand& hand = {});
 

@@ -23,7 +23,7 @@ std::vector<LiveHand> open_hands(const std::shared_ptr<run::Data>& data,
     for (const run::Setup& setup : setups) {
         auto run = std::make_unique<run::Run>(data, setup, stop_if_interrupted);
         const DeviceInfo device = run->device();
-        LiveCommands commands(run->field(), run->isovalue(), run->settings());
+        LiveCommands commands(*run);
         std::string name = "device " + device.name;
         if (setups.size() > 1) name = fmt::format("hand {}, {}", hands.size() + 1, name);
         hands.push_back({.run = std::move(run),

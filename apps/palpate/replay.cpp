@@ -232,7 +232,7 @@ void add_replay(CLI::App& app) {
     table("--path", options->path, "Path of the SCP to write");
     table("--poses", options->poses, "Poses of a tool's proxy to write");
     add_field_options(*command, options->field);
-    options->render.add_to(*command);
+    options->render.add_to(*command, options->source.memory);
     command->add_flag("--live", options->live,
                       "Render in real time and, where samples of a store are missing, hold the "
                       "proxy");

@@ -236,6 +236,7 @@ std::string feel(std::vector<LiveHand>& hands, const RunOptions& options, Remote
 /// Refuses to overwrite files that this command reads.
 void check_saving(run::Data& data, const TouchOptions& options) {
     data.keep(options.commands);
+    data.keep(options.record);
     for (const std::string& input : options.render.inputs()) data.keep(input);
     if (!options.save.empty()) data.check_save_name(options.save);
 }

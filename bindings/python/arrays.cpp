@@ -44,6 +44,19 @@ std::shared_ptr<const void> kept_by(py::object owner, const void* data) {
             }};
 }
 
+/// C-contiguous and in this machine's byte order. Slice by slice, so that Ctrl-C stops it.
+py::array copied(const py::array& given) {
+    const py::dtype type = given.dtype().attr("newbyteorder")("=");
+    py::array copy(type, std::vector<py::ssize_t>(given.shape(), given.shape() + given.ndim()));
+    Stoppable work;
+    const auto slices = given.shape(0);
+    for (py::ssize_t i = 0; i < slices; ++i) {
+        copy[py::int_(i)] = given[py::int_(i)];
+        work.done(static_cast<std::size_t>(given.nbytes() / slices));
+    }
+    return copy;
+}
+
 }  // namespace
 
 Volume volume_from(const py::array& given, const Geometry& geometry_but_size,
@@ -62,8 +75,7 @@ Volume volume_from(const py::array& given, const Geometry& geometry_but_size,
     py::array array = given;
     const std::string why = why_not_shared(given);
     if (copy.value_or(!why.empty())) {
-        array = py::module_::import("numpy").attr("array")(
-            given, given.dtype().attr("newbyteorder")("="), py::arg("order") = "C");
+        array = copied(given);
     } else if (!why.empty()) {
         throw std::invalid_argument(why + "; pass copy=True for a copy");
     }
@@ -100,9 +112,11 @@ std::vector<Vec3> points_from(const Doubles& array, const char* name) {
     }
     std::vector<Vec3> points(static_cast<std::size_t>(array.shape(0)));
     const double* from = array.data();
+    Stoppable work;
     for (Vec3& point : points) {
         point = Vec3(from[0], from[1], from[2]);
         from += 3;
+        work.done(sizeof point);
     }
     return points;
 }

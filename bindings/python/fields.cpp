@@ -93,7 +93,7 @@ void bind_samples(py::module_& module) {
             "volume",
             [](const Samples& self, double time) {
                 check_numbers("time", time, ranges::finite);
-                return flattened(self, self.moment_at(time));
+                return flattened(self, self.moment_at(time), ctrl_c());
             },
             py::arg("time") = 0.0, py::call_guard<GilReleased>(),
             "As one Volume, with all edits, at a time of a sequence [s].")

@@ -7,6 +7,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -48,10 +49,26 @@ bool holds(From number) {
 
 /// Whether T holds all numbers of an array of type From.
 template <class T, class From>
-bool holds_all(const py::array& array) {
+bool holds_some(const py::array& array) {
     const auto numbers = Numbers<From>::ensure(array);
     for (py::ssize_t i = 0; i < numbers.size(); ++i) {
         if (!holds<T>(numbers.data()[i])) return false;
+    }
+    return true;
+}
+
+/// The same for large ones, some rows at a time: Ctrl-C stops it, and it takes little memory.
+template <class T, class From>
+bool holds_all(const py::array& array) {
+    if (array.dtype().is(py::dtype::of<T>())) return true;
+    constexpr py::ssize_t some = 1 << 18;
+    if (array.ndim() == 0 || array.size() <= some) return holds_some<T, From>(array);
+    const py::ssize_t rows = array.shape(0);
+    const py::ssize_t each = std::max<py::ssize_t>(1, rows * some / array.size());
+    for (py::ssize_t row = 0; row < rows; row += each) {
+        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        const py::slice part(row, std::min(rows, row + each), 1);
+        if (!holds_some<T, From>(py::array(array[part]))) return false;
     }
     return true;
 }

@@ -30,6 +30,21 @@ inline OnProgress ctrl_c() {
     return progress_of(none);
 }
 
+/// Work of many alike items with the GIL, which Ctrl-C stops: done() after so many.
+class Stoppable {
+  public:
+    void done(std::size_t bytes) {
+        done_ += bytes;
+        if (done_ < between) return;
+        done_ = 0;
+        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    }
+
+  private:
+    static constexpr std::size_t between = std::size_t{4} << 20;  // milliseconds
+    std::size_t done_ = 0;
+};
+
 /// So many items take milliseconds: points of a field, updates of a proxy, or ticks; and batches of
 /// them, or updates of a tool.
 inline constexpr std::size_t updates_in_slice = 4096, batches_in_slice = 64;

@@ -34,8 +34,14 @@ SurfaceMesh mesh_from(const Doubles& vertices, const Indices& triangles) {
     }
     SurfaceMesh mesh;
     mesh.vertices = points_from(vertices, "vertices");
-    for (const Vec3& vertex : mesh.vertices) check_numbers("vertices", vertex, ranges::finite);
+    Stoppable work;
+    for (const Vec3& vertex : mesh.vertices) {
+        check_numbers("vertices", vertex, ranges::finite);
+        work.done(sizeof vertex);
+    }
+    mesh.triangles.reserve(static_cast<std::size_t>(triangles.shape(0)));
     for (py::ssize_t i = 0; i < triangles.shape(0); ++i) {
+        work.done(sizeof mesh.triangles[0]);
         for (const int corner : {0, 1, 2}) {
             if (triangles.at(i, corner) >= mesh.vertices.size()) {
                 throw std::invalid_argument("triangle " + std::to_string(i) +

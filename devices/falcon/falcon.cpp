@@ -77,10 +77,14 @@ std::unique_ptr<falcon::FalconDevice> falcon::open(const DeviceChoice& choice,
             left_alone_when_stopped(scene.progress, [library] { return Ftdi(library); });
         const Settings settings{static_cast<unsigned int>(index), firmware_from(firmware),
                                 scene.rate};
+        Claim own = claim_for(settings);
+        const auto leaving = own.leaving();
         return left_alone_when_stopped(
-            scene.progress, [ftdi, claim = claim_for(settings), settings, timing]() mutable {
+            scene.progress,
+            [ftdi, claim = std::move(own), settings, timing]() mutable {
                 return std::make_unique<FalconDevice>(ftdi, std::move(claim), settings, timing);
-            });
+            },
+            leaving);
     } catch (const DeviceError& error) {
         throw DeviceError("device " + choice.name + ": " + error.what());
     }

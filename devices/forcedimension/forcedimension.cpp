@@ -72,10 +72,14 @@ std::unique_ptr<forcedimension::DhdDevice> forcedimension::open(const DeviceChoi
     options.finish();
     try {
         const Dhd dhd = left_alone_when_stopped(scene.progress, [library] { return Dhd(library); });
+        Claim own = claim_for(settings);
+        const auto leaving = own.leaving();
         return left_alone_when_stopped(
-            scene.progress, [dhd, claim = claim_for(settings), settings, timing]() mutable {
+            scene.progress,
+            [dhd, claim = std::move(own), settings, timing]() mutable {
                 return std::make_unique<DhdDevice>(dhd, std::move(claim), settings, timing);
-            });
+            },
+            leaving);
     } catch (const DeviceError& error) {
         throw DeviceError("device " + choice.name + ": " + error.what());
     }

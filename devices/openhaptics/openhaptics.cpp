@@ -43,12 +43,16 @@ std::unique_ptr<Device> openhaptics::open(const DeviceChoice& choice, const Devi
     const std::string library = options.text("library", "");
     options.finish();
     try {
+        Claim own = claim_for_all();
+        const auto leaving = own.leaving();
         return left_alone_when_stopped(
-            scene.progress, [library, claim = claim_for_all(), settings, timing]() mutable {
+            scene.progress,
+            [library, claim = std::move(own), settings, timing]() mutable {
                 return std::make_unique<Phantom>(
                     std::make_unique<Attachment>(std::move(claim), library, settings.name),
                     settings, timing);
-            });
+            },
+            leaving);
     } catch (const DeviceError& error) {
         throw DeviceError("device " + choice.name + ": " + error.what());
     }

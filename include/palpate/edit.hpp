@@ -147,6 +147,8 @@ class Editor {
     /// has then changed nothing.
     SampleBox apply(const Edit& edit, EditStep step = EditStep::own,
                     const OnProgress& progress = {});
+    /// The same for an edit of samples(), computed with edited().
+    SampleBox take(Edited result, EditStep step = EditStep::own);
     /// Undoes the last step, or redoes the step undone last. Returns the box of samples that
     /// changed. It is empty if there is no such step.
     SampleBox undo();

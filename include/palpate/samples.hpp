@@ -207,8 +207,10 @@ class Samples {
 
 /// The samples at a moment as one volume of the same type (rounded to it between two frames), for
 /// files and for code that needs one array. It shares an existing volume if that has the same
-/// samples. For a large grid, the overview with the edits (ShownEdits).
-Volume flattened(const Samples& samples, const Moment& moment = {});
+/// samples. For a large grid, the overview with the edits (ShownEdits). `progress` is called while
+/// samples are copied.
+Volume flattened(const Samples& samples, const Moment& moment = {},
+                 const OnProgress& progress = {});
 /// Shows the edits of a large grid on a volume with other samples of the same part of space (an
 /// overview, or a box of some level). Each of its samples takes the value of the nearest sample of
 /// the grid if that lies in an edited brick. One thread at a time.

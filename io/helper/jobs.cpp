@@ -205,13 +205,10 @@ class Workshop {
                 throw Failure("cannot be given the mode of the file it replaces (" + reason(errno) +
                               ")");
             }
-            const int whole = open_to_read(file);
-            const bool moved = synchronise(whole) && replace(file, to);
-            const int error = errno;
-            if (whole >= 0) ::close(whole);
-            if (!moved) throw Failure("cannot be put in its place (" + reason(error) + ")");
+            if (!replace_synced(file, to)) {
+                throw Failure("cannot be put in its place (" + reason(errno) + ")");
+            }
         }
-        synchronise_folder(parent);
         fs::remove(marker());
         fs::remove(folder_);
     }

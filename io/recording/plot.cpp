@@ -5,11 +5,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
 
 #include "io/system/leftovers.hpp"
+#include "io/system/system.hpp"
+#include "palpate/io/error.hpp"
 
 namespace palpate::io {
 namespace {
@@ -69,8 +72,10 @@ std::string plot(const std::string& script, const fs::path& figure, const PlotSi
     const int status = ::pclose(out);
     std::error_code error;
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0 && fs::exists(part, error)) {
-        fs::rename(part, figure, error);
-        return error ? error.message() : "";
+        if (replace_synced(part, figure)) return "";
+        const int problem = errno;
+        fs::remove(part, error);
+        return reason(problem);
     }
     fs::remove(part, error);
     return complaint_in(said);

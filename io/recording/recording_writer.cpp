@@ -62,8 +62,14 @@ RecordingWriter::RecordingWriter(const std::filesystem::path& path,
     thread_ = stepping_thread(between_writes, [this](SteadyTime) { step(); });
     // A thread of its own: a disk that is busy for seconds must not keep the queue from being
     // emptied. Pipes have no disk; a write tells what is wrong.
-    syncer_ =
-        stepping_thread(between_syncs, [this](SteadyTime) { (void)synchronise(descriptor_); });
+    syncer_ = stepping_thread(between_syncs, [this](SteadyTime) { keep_on_disk(); });
+}
+
+/// What it holds, and its name.
+void RecordingWriter::keep_on_disk() const {
+    if (!seekable_) return;
+    (void)synchronise(descriptor_);
+    synchronise_folder(path_.has_parent_path() ? path_.parent_path() : ".");
 }
 
 RecordingWriter::~RecordingWriter() {
@@ -101,7 +107,7 @@ void RecordingWriter::finish(std::int64_t lost, int hand) {
         end_threads();  // they may wait for the lock
         text_->end(lost_, begins());
         flush();
-        (void)synchronise(descriptor_);
+        keep_on_disk();
         close();
     }
     if (const std::string wrong = problem(); !wrong.empty()) throw OutputError(wrong);

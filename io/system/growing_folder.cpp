@@ -422,7 +422,7 @@ void check_parent(const fs::path& name) {
     if (!fs::is_directory(parent, error)) {
         refuse(name, "its folder does not exist; create it first, or choose another folder");
     }
-    if (const int problem = why_unwritable(parent)) {
+    if (const int problem = why_no_file_in(parent)) {
         refuse(name, "cannot be written (" + reason(problem) + "); choose another folder");
     }
 }

@@ -84,19 +84,19 @@ void remove_if_known(const fs::path& folder) {
 }
 
 /// A living process keeps a lock, so that one in another container counts as living, too.
-void remove_one(const fs::path& path, ino_t inode) {
+void remove_one(const fs::path& path) {
     // O_NONBLOCK: a pipe of that name must not hold us up.
     const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
     if (descriptor < 0) return;
     struct stat about {};
     if (::fstat(descriptor, &about) == 0 && about.st_uid == ::geteuid() &&
         ::flock(descriptor, LOCK_EX | LOCK_NB) == 0) {
-        const bool is_signed = about.st_ino == inode;
-        const bool is_unused = inode == 0 && about.st_size == 0;  // killed before it was signed
-        if ((S_ISREG(about.st_mode) && (is_signed || is_unused)) ||
+        const bool is_empty_file = S_ISREG(about.st_mode) && about.st_size == 0;
+        const bool is_own = is_own_temporary(path.filename().native(), about.st_ino, is_empty_file);
+        if ((S_ISREG(about.st_mode) && is_own) ||
             (S_ISDIR(about.st_mode) && is_marked(descriptor))) {
             remove_tree(path);
-        } else if (S_ISDIR(about.st_mode) && is_signed) {
+        } else if (S_ISDIR(about.st_mode) && is_own) {
             remove_if_known(path);
         }
     }
@@ -117,6 +117,11 @@ bool is_new(const fs::path& folder) {
 
 bool is_temporary(std::string_view name) {
     return told_by(name).process > 0;
+}
+
+bool is_own_temporary(std::string_view name, std::uint64_t inode, bool is_empty_file) {
+    const TemporaryName told = told_by(name);
+    return told.process > 0 && (told.inode > 0 ? told.inode == inode : is_empty_file);
 }
 
 fs::path temporary_in(const fs::path& folder) {
@@ -147,6 +152,23 @@ fs::path make_temporary_folder(const fs::path& folder, std::error_code& error) {
     }
 }
 
+int why_no_file_in(const fs::path& folder) {
+    if (const int problem = why_unwritable(folder)) return problem;
+    const int nameless = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600);
+    if (nameless >= 0) {
+        ::close(nameless);
+        return 0;
+    }
+    // Not all file systems have files without a name.
+    const fs::path path = temporary_in(folder);
+    const int file = create_to_write(path);
+    if (file < 0 && errno == EEXIST) return 0;
+    if (file < 0) return errno == ENOENT ? ENOTSUP : errno;  // the folder is there
+    ::close(file);
+    ::unlink(path.c_str());
+    return 0;
+}
+
 int lock_temporary(const std::filesystem::path& path) {
     const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
     if (descriptor >= 0) (void)::flock(descriptor, LOCK_EX | LOCK_NB);
@@ -159,7 +181,7 @@ void remove_leftovers(const fs::path& folder) {
     for (fs::directory_iterator entry(folder, error), end; entry != end && !error;
          entry.increment(error)) {
         const TemporaryName told = told_by(entry->path().filename().native());
-        if (told.process > 0 && is_dead(told.process)) remove_one(entry->path(), told.inode);
+        if (told.process > 0 && is_dead(told.process)) remove_one(entry->path());
     }
 }
 

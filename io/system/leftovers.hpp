@@ -2,6 +2,7 @@
 // they are in use, and how those of killed processes go. Private to io/ and programs.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string_view>
 #include <system_error>
@@ -21,6 +22,10 @@ std::filesystem::path signed_temporary(const std::filesystem::path& path);
 /// Whether a name is such a one, of any process.
 bool is_temporary(std::string_view name);
 
+/// Whether a file or folder with such a name proves that Palpate made it: the name tells its inode,
+/// or it is an empty file whose process was killed before it signed it. Linux.
+bool is_own_temporary(std::string_view name, std::uint64_t inode, bool is_empty_file);
+
 /// A file of this name and content in a folder with such a name says that Palpate made the folder.
 inline constexpr const char* temporary_marker = ".palpate-temporary";
 inline constexpr std::string_view temporary_marker_text =
@@ -31,6 +36,10 @@ inline constexpr std::string_view temporary_marker_text =
 /// `error`.
 std::filesystem::path make_temporary_folder(const std::filesystem::path& folder,
                                             std::error_code& error);
+
+/// Why no file can be made in a folder: an error number, or 0. On Linux it tries: the user root may
+/// write where no files can be made, as in /proc. Nothing with a name is left behind.
+int why_no_file_in(const std::filesystem::path& folder);
 
 /// Locks what this process has created as long as the descriptor returned is open: then a process
 /// in another container or on another machine does not take it for a leftover. Below 0 where there

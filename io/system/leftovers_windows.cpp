@@ -9,6 +9,7 @@
 #include "io/system/leftovers.hpp"
 #include "io/system/number.hpp"
 #include "io/system/removal.hpp"
+#include "io/system/system.hpp"
 
 namespace palpate::io {
 namespace {
@@ -65,6 +66,10 @@ fs::path make_temporary_folder(const fs::path& folder, std::error_code& error) {
 }
 
 /// Not needed, because an open file cannot be removed.
+int why_no_file_in(const fs::path& folder) {
+    return why_unwritable(folder);
+}
+
 int lock_temporary(const std::filesystem::path&) {
     return -1;
 }

@@ -112,7 +112,7 @@ void check_output(const std::filesystem::path& path) {
                  : "cannot be written: the folder " + folder.string() +
                        " does not exist: create it first");
     }
-    if (const int problem = why_unwritable(folder)) fail("cannot be written: " + because(problem));
+    if (const int problem = why_no_file_in(folder)) fail("cannot be written: " + because(problem));
 }
 
 PendingFile::PendingFile(const std::filesystem::path& target) : target_(followed(target)) {

@@ -81,14 +81,17 @@ std::optional<Place> folder_in(Place place, const std::string& name) {
     return std::nullopt;
 }
 
-bool is_file_in(Place place, const std::string& whole) {
+bool is_file_in(Place place, const std::string& whole, const struct stat& about) {
     const std::string name = finished(whole);
+    const auto is_temporary = [&] {
+        return is_own_temporary(whole, about.st_ino, about.st_size == 0);
+    };
     switch (place) {
         case Place::growing:
-            return name == growing_marker || is_temporary(whole);
+            return name == growing_marker || is_temporary();
         case Place::image:
             return name == "zarr.json" || name == ".zgroup" || name == ".zattrs" ||
-                   name == edits_note || is_temporary(whole);
+                   name == edits_note || is_temporary();
         case Place::level:
             return name == "zarr.json" || name == ".zarray";
         case Place::xs:
@@ -107,7 +110,7 @@ bool is_ours(int folder, const std::string& name, Place place, bool removes, std
     struct stat about {};
     if (::fstatat(folder, name.c_str(), &about, AT_SYMLINK_NOFOLLOW) != 0) return errno == ENOENT;
     if (!S_ISDIR(about.st_mode)) {
-        if (!S_ISREG(about.st_mode) || !is_file_in(place, name)) return false;
+        if (!S_ISREG(about.st_mode) || !is_file_in(place, name, about)) return false;
         return !removes || ::unlinkat(folder, name.c_str(), 0) == 0 || errno == ENOENT;
     }
     const auto inside = folder_in(place, name);

@@ -63,6 +63,9 @@ bool truncate(int descriptor, std::int64_t bytes);
 
 /// Renames `from` to `to`, in place of what was there.
 bool replace(const std::filesystem::path& from, const std::filesystem::path& to);
+/// The same for a complete file. It is synced first, so that a power cut never leaves a part of it
+/// under that name, and then the folder.
+bool replace_synced(const std::filesystem::path& from, const std::filesystem::path& to);
 /// Renames `from` to `to` if nothing is there; else errno is EEXIST.
 bool rename_new(const std::filesystem::path& from, const std::filesystem::path& to);
 /// What had one name gets the other; false also where that cannot be done.

@@ -2,9 +2,11 @@
 #include "stream/formats/edited_store.hpp"
 
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "io/json_text.hpp"
 #include "io/path_json.hpp"
+#include "io/system/number.hpp"
 #include "io/system/own_names.hpp"
 #include "palpate/io/address.hpp"
 #include "palpate/io/error.hpp"
@@ -230,6 +232,24 @@ void EditedStore::read(int level, const SampleBox& box, std::span<std::byte> out
 bool holds_edits(const fs::path& folder) {
     std::error_code error;
     return fs::is_regular_file(folder / io::edits_note, error);
+}
+
+std::string unlisted_chunk(const fs::path& folder) {
+    const EditsNote note = read_note(folder, {});
+    std::error_code error;
+    fs::recursive_directory_iterator entry(folder, error);
+    for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
+        const fs::path file = entry->path().lexically_relative(folder);
+        std::vector<std::string> names;  // LEVEL/c/Z/Y/X
+        for (const fs::path& name : file) names.push_back(name.string());
+        if (names.size() != 5 || names[1] != "c") continue;
+        const auto at = [&](std::size_t i) { return io::number_from<int>(names[i]).value_or(-1); };
+        const auto level = static_cast<std::size_t>(at(0));
+        const bool is_listed =
+            level < note.chunks.size() && note.chunks[level].contains(Index3(at(4), at(3), at(2)));
+        if (!is_listed) return file.string();
+    }
+    return "";
 }
 
 namespace {

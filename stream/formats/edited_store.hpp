@@ -43,8 +43,11 @@ class EditedStore : public Store {
     StoreInfo info_;
 };
 
-/// True for a folder that save_edits() wrote.
+/// True for a folder with a note of edits, whoever put it there.
 bool holds_edits(const std::filesystem::path& folder);
+/// The first chunk in such a folder that its note does not list, as a path from `folder`: another
+/// program has put it there. Empty if there is none. Throws io::InputError for a damaged note.
+std::string unlisted_chunk(const std::filesystem::path& folder);
 /// Opens one with its original. Throws io::InputError, and Cancelled as open_until().
 std::shared_ptr<const Store> open_edits(const std::stop_token& stop, const std::string& folder,
                                         const StoreOptions& options);

@@ -27,12 +27,15 @@ struct Job {
     CURL* easy = nullptr;
     int attempts = 0;
     Clock::time_point not_before{};
-    std::uint64_t page_bytes = 0;  // of a page that explains an error
-    bool too_long = false, page_was_cut = false;
+    std::uint64_t page_bytes = 0;    // of a page that explains an error
+    std::uint64_t header_bytes = 0;  // of all answers on the way, with what follows the last body
+    bool too_long = false, page_was_cut = false, headers_too_long = false;
     bool cancelled = false;  // under the mutex, as what follows
     bool done = false;
     bool no_memory = false;  // words take memory, too: its caller finds them
 };
+/// [bytes/s] A server that is slower than this for as long as the timeout does not answer.
+constexpr long least_speed = 500;
 constexpr const char* no_memory_words = "there is too little memory for its bytes";
 
 std::uint64_t most_of(const HttpRequest& request) {
@@ -115,6 +118,16 @@ std::size_t take_body(char* bytes, std::size_t one, std::size_t count, void* of)
     return size;
 }
 
+/// Counts headers, which libcurl keeps. Those that follow a body have no limit there.
+std::size_t take_header(char*, std::size_t one, std::size_t count, void* of) {
+    constexpr std::uint64_t most_headers = std::uint64_t{1} << 20;
+    Job& job = *static_cast<Job*>(of);
+    const std::size_t size = one * count;
+    job.header_bytes += size;
+    job.headers_too_long = job.header_bytes > most_headers;
+    return job.headers_too_long ? 0 : size;
+}
+
 bool worth_another_attempt(CURLcode code, long status) {
     switch (code) {
         case CURLE_OK:
@@ -140,6 +153,7 @@ std::string words_of(const Job& job, CURLcode code, long status) {
         return "the server gives whole files only, no parts of them; copy the store from there";
     }
     if (job.no_memory) return no_memory_words;
+    if (job.headers_too_long) return "the server gives headers without end";
     if (job.too_long) return "the server gives more bytes than were requested";
     if (code != CURLE_OK) return curl_easy_strerror(code);
     if (status >= 400) return "the server answers with status " + std::to_string(status);
@@ -271,8 +285,8 @@ class HttpClient::Worker {
         ++job->attempts;
         *job->left += job->answer.body.size();
         job->answer = {};
-        job->page_bytes = 0;
-        job->too_long = job->no_memory = job->page_was_cut = false;
+        job->page_bytes = job->header_bytes = 0;
+        job->too_long = job->no_memory = job->page_was_cut = job->headers_too_long = false;
         set_up(*job);
         if (curl_multi_add_handle(multi_, job->easy) != CURLM_OK) throw std::bad_alloc();
     }
@@ -316,9 +330,11 @@ class HttpClient::Worker {
         curl_easy_setopt(easy, CURLOPT_TIMEOUT_MS, static_cast<long>(limit_ms));
         curl_easy_setopt(easy, CURLOPT_CONNECTTIMEOUT_MS,
                          static_cast<long>(1e3 * limits_.timeout_s));
-        curl_easy_setopt(easy, CURLOPT_LOW_SPEED_LIMIT, 1L);
+        curl_easy_setopt(easy, CURLOPT_LOW_SPEED_LIMIT, least_speed);
         curl_easy_setopt(easy, CURLOPT_LOW_SPEED_TIME,
                          std::max(1L, static_cast<long>(std::ceil(limits_.timeout_s))));
+        curl_easy_setopt(easy, CURLOPT_HEADERFUNCTION, &take_header);
+        curl_easy_setopt(easy, CURLOPT_HEADERDATA, &job);
         curl_easy_setopt(easy, CURLOPT_WRITEFUNCTION, &take_body);
         curl_easy_setopt(easy, CURLOPT_WRITEDATA, &job);
         if (const auto& range = job.request.range) {

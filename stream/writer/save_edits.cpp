@@ -209,7 +209,8 @@ EditsNote note_for(const Store& from, const Opened& opened, int level, const Sam
     return note;
 }
 
-/// Edits that save_edits() wrote, and nothing else, may be replaced.
+/// Edits that save_edits() wrote, and nothing else, may be replaced. A name alone is no proof: the
+/// note must be whole, and list every chunk.
 void check_replaceable(const fs::path& out) {
     const auto refuse = [&](const std::string& why) {
         throw io::OutputError(out.string() + ": " + why + "; give another name");
@@ -218,7 +219,13 @@ void check_replaceable(const fs::path& out) {
     if (!fs::is_directory(fs::symlink_status(out, error)) || !holds_edits(out)) {
         refuse("is there already and is no folder of edits");
     }
-    const std::string unknown = io::unknown_below(out, io::OwnFolder::image);
+    std::string unknown = io::unknown_below(out, io::OwnFolder::image);
+    try {
+        if (unknown.empty()) unknown = unlisted_chunk(out);
+    } catch (const io::InputError& e) {
+        refuse("cannot be replaced, since it may not be of Palpate (" + std::string(e.what()) +
+               ")");
+    }
     if (!unknown.empty()) refuse("holds " + unknown + ", which Palpate did not write");
 }
 

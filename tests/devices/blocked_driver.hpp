@@ -8,6 +8,7 @@
 #include <future>
 #include <string>
 
+#include "devices/claim.hpp"
 #include "palpate/devices/backend.hpp"
 #include "support/eventually.hpp"
 
@@ -18,6 +19,10 @@ namespace palpate::support {
 template <class Open, class Block>
 void expect_a_stopped_opening_is_left_alone(const Open& open, const Block& block) {
     struct Stopped {};
+    const int hand = 0;
+    const devices::OpenedBy opened_by(&hand, [] {
+        ADD_FAILURE() << "the hand gives up its device for one that cannot be opened";
+    });
     std::promise<void> answer;
     // For long only, so that a program that waits for it fails and does not hang.
     const auto end = answer.get_future().share();
@@ -31,7 +36,7 @@ void expect_a_stopped_opening_is_left_alone(const Open& open, const Block& block
         open(OnProgress{});
         ADD_FAILURE() << "it was opened twice";
     } catch (const devices::DeviceError& error) {
-        EXPECT_NE(std::string(error.what()).find("serves another hand"), std::string::npos)
+        EXPECT_NE(std::string(error.what()).find("its driver has not returned"), std::string::npos)
             << error.what();
     }
     answer.set_value();

@@ -12,6 +12,7 @@
 
 #include "io/path_json.hpp"
 #include "io/process/helper_process.hpp"
+#include "io/system/leftovers.hpp"
 #include "io/system/open_file.hpp"
 #include "io/system/own_names.hpp"
 #include "io/system/removal.hpp"
@@ -196,13 +197,17 @@ TEST(GrowingFolder, knows_its_own_names_and_does_not_guess_what_it_cannot_read) 
     const fs::path image = folder / "i.zarr";
     fs::create_directories(image / "0/c/3/2");
     fs::create_directories(image / "1/4/5");
-    for (const char* name : {"zarr.json", ".zgroup", "palpate-edits.json", "0/zarr.json",
-                             "0/c/3/2/1", "0/c/3/2/7.part", "0/c/3/2/8.part-host-1-2", "1/.zarray",
-                             "1/4/5/6", ".palpate-12-3.part"}) {
+    for (const char* name :
+         {"zarr.json", ".zgroup", "palpate-edits.json", "0/zarr.json", "0/c/3/2/1",
+          "0/c/3/2/7.part", "0/c/3/2/8.part-host-1-2", "1/.zarray", "1/4/5/6"}) {
         put_bytes(image / name, "ours");
     }
+    put_bytes(image / ".palpate-12-3.part", "");  // killed before it was signed
+    put_bytes(image / ".palpate-12-4.part", "ours");
+    (void)signed_temporary(image / ".palpate-12-4.part");
     EXPECT_EQ(unknown_below(image, OwnFolder::image), "");
-    for (const char* name : {"0/c/3/2/01", "0/c/3/x", "0/c/5", "64", "notes", "1/4/5/6.txt"}) {
+    for (const char* name : {"0/c/3/2/01", "0/c/3/x", "0/c/5", "64", "notes", "1/4/5/6.txt",
+                             ".palpate-12-5.part", ".palpate-12-5-1.part"}) {
         put_bytes(image / name, "years");
         EXPECT_EQ(unknown_below(image, OwnFolder::image), name);
         EXPECT_EQ(bytes_of(image / name), "years");

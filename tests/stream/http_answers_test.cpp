@@ -105,6 +105,26 @@ void save_edits_of(const std::string& address, const fs::path& out,
 /// Thrown to stop what waits.
 struct Impatient {};
 
+TEST(HttpAnswers, one_whose_headers_do_not_end_is_refused_and_costs_little) {
+    const VolumeServer server({"--trailers"});
+    StoreOptions options;
+    options.timeout_s = 5;
+    options.attempts = 1;
+    const std::string message =
+        message_of<io::InputError>([&] { (void)open_store(server.address("c.zarr"), options); });
+    EXPECT_TRUE(contains(message, "headers without end")) << message;
+}
+
+TEST(HttpAnswers, one_that_comes_drop_by_drop_is_not_waited_for) {
+    const VolumeServer server({"--drips"});
+    StoreOptions options;
+    options.timeout_s = 1;  // all of it would take hours
+    options.attempts = 1;
+    const std::string message =
+        message_of<io::InputError>([&] { (void)open_store(server.address("c.zarr"), options); });
+    EXPECT_TRUE(contains(message, "Timeout was reached")) << message;
+}
+
 TEST(HttpAnswers, a_part_that_was_not_asked_for_is_refused) {
     const std::string message = Served({"--other-range"}).refusal("s.zarr");
     EXPECT_TRUE(contains(message, "which were not requested")) << message;

@@ -207,9 +207,9 @@ TEST(OwnFiles, saving_edits_touches_no_partial_whoever_made_it) {
         EXPECT_EQ(all_in(partial), before);
     }
     EXPECT_EQ(bytes_of(precious / "thesis.txt"), "years");
-    // Foreign files in a folder of edits stay there.
-    for (const std::string place :
-         {"notes.txt", "0/notes.txt", "2024/notes.txt", "0/c/notes.txt"}) {
+    // Foreign files in a folder of edits stay there, also chunks that are not of the edits.
+    for (const std::string place : {"notes.txt", "0/notes.txt", "2024/notes.txt", "0/c/notes.txt",
+                                    "0/c/1/1/900", "5/c/0/0/0", ".palpate-12-3.part"}) {
         const fs::path file = folder / ("edits.zarr/" + place);
         fs::create_directories(file.parent_path());
         put_bytes(file, "mine");
@@ -221,7 +221,28 @@ TEST(OwnFiles, saving_edits_touches_no_partial_whoever_made_it) {
         EXPECT_EQ(bytes_of(file), "mine");
         fs::remove(file);
         if (place.starts_with("2024")) fs::remove(file.parent_path());
+        if (place.starts_with("5")) fs::remove_all(folder / "edits.zarr/5");
     }
+}
+
+TEST(OwnFiles, a_folder_whose_note_of_edits_is_not_of_palpate_is_not_replaced) {
+    const ScratchFolder folder;
+    const Volume volume = noise(1);
+    const auto store = store_of(volume, "v");
+    (void)convert_to_zarr(*store, 0, folder / "v.zarr", small_chunks());
+    const auto original = open_store(folder / "v.zarr");
+    const auto read = [&](const SampleBox& box, std::span<std::byte> to) {
+        original->read(0, box, to, {});
+    };
+    const auto edits =
+        edited(empty_samples(*original, volume, 0), edit::Fill{{{3, 3, 3}, {9, 9, 9}}, 7}, read);
+    (void)convert_to_zarr(*store, 0, folder / "other.zarr", small_chunks());
+    put_bytes(folder / "other.zarr/palpate-edits.json", "");
+    const auto before = all_in(folder / "other.zarr");
+    EXPECT_THROW(save_edits(*original, {folder / "v.zarr", {}}, 0, *edits.samples,
+                            folder / "other.zarr", {}),
+                 io::OutputError);
+    EXPECT_EQ(all_in(folder / "other.zarr"), before);
 }
 
 TEST(OwnFiles, an_interrupted_run_is_continued_for_the_same_content_only) {

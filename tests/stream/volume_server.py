@@ -153,6 +153,21 @@ def make_handler(options):
                     arrived.wait_for(lambda: len(asked[kind]) >= together[kind])
 
         def answer(self, draw, flip):
+            if options.trailers:
+                self.send_response(200)
+                self.send_header("Transfer-Encoding", "chunked")
+                self.end_headers()
+                self.wfile.write(b"1\r\n{\r\n0\r\n")
+                while True:
+                    self.wfile.write(b"X-More: " + 1000 * b"x" + b"\r\n")
+            if options.drips:
+                self.send_response(200)
+                self.send_header("Content-Length", "1000000")
+                self.end_headers()
+                while True:
+                    self.wfile.write(b" ")
+                    self.wfile.flush()
+                    time.sleep(0.02)
             if draw < options.failures:
                 counts["failed"] += 1
                 return self.give(503)
@@ -244,6 +259,8 @@ def main():
     parser.add_argument("--levels-together", type=int, default=0,
                         help="levels of the virtual volume that must be asked for before one is answered")
     parser.add_argument("--chunks-together", type=int, default=0, help="the same with chunks")
+    parser.add_argument("--trailers", action="store_true", help="endless headers after each body")
+    parser.add_argument("--drips", action="store_true", help="50 bytes per second")
     parser.add_argument("--seed", type=int, default=1)
     server = Server(("127.0.0.1", 0), make_handler(parser.parse_args()))
     print(server.server_address[1], flush=True)

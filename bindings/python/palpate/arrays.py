@@ -120,24 +120,32 @@ def _is_sheared(affine):
 
 
 def _finite(samples):
-    """NaN and infinity become the least finite sample, as load() does it."""
-    good = numpy.isfinite(samples)
-    count = samples.size - numpy.count_nonzero(good)
+    """NaN and infinity become the least finite sample, as load() does it. Slice by slice, as in _kept()."""
+    count = sum(part.size - numpy.count_nonzero(numpy.isfinite(part)) for part in samples)
     if count in (0, samples.size):  # of the latter a Volume says that none is finite
         return samples
     warnings.warn(f"{count} samples were not finite (NaN or infinity) and became the least finite "
                   "value", stacklevel=4)
-    return numpy.where(good, samples, samples[good].min())
+    least = min(part[numpy.isfinite(part)].min(initial=numpy.inf) for part in samples)
+    finite = numpy.empty(samples.shape, samples.dtype)
+    for part, made in zip(samples, finite):
+        made[...] = numpy.where(numpy.isfinite(part), part, least)
+    return finite
 
 
 def _kept(samples):
-    """Of a type and byte order that a Volume takes."""
+    """Of a type and byte order that a Volume takes. Slice by slice, so that Ctrl-C stops it."""
     if samples.dtype.kind not in "biuf":
         raise ValueError(f"samples of type {samples.dtype} are no numbers that can be felt")
     name = samples.dtype.name
     wanted = name if name in _KEPT else _WIDER.get(name, "float32")
-    with numpy.errstate(over="ignore"):  # what float32 cannot hold is infinite, and said
-        samples = samples.astype(wanted, copy=False)
-    if wanted != "float32" or numpy.ma.is_masked(samples):  # Volume refuses masked elements
-        return samples
-    return _finite(samples)
+    if samples.ndim != 3 or numpy.ma.is_masked(samples):  # Volume refuses them
+        return samples.astype(wanted, copy=False)
+    samples = numpy.asarray(samples)
+    if samples.dtype != wanted:
+        made = numpy.empty(samples.shape, wanted)
+        with numpy.errstate(over="ignore"):  # what float32 cannot hold is infinite, and said
+            for part, to in zip(samples, made):
+                to[...] = part
+        samples = made
+    return _finite(samples) if wanted == "float32" else samples

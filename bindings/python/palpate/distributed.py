@@ -14,9 +14,7 @@ import json
 import os
 import pickle
 import shutil
-import socket
 import sys
-import threading
 import zlib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Callable, Optional, Union
@@ -25,6 +23,7 @@ import numpy
 
 from . import InputError, Volume, __version__, _palpate, open_store, sharpened, smoothed
 from .command_line import Kind, Parser, one_of, remark, run, say, tell, whole
+from .whole_files import write_whole, writer
 
 if TYPE_CHECKING:  # help needs no Dask
     from distributed import Client
@@ -50,11 +49,6 @@ class Converted:
 @functools.lru_cache(maxsize=4)
 def _opened(source, options, seen_files):
     return open_store(source, **pickle.loads(options))
-
-
-def writer():
-    """Who writes: a worker that was taken for dead may write the same as another one."""
-    return f"{socket.gethostname()}-{os.getpid()}-{threading.get_ident()}"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -112,9 +106,7 @@ def _cut(volume, around, block):
 
 def _put(path, text):
     path.parent.mkdir(parents=True, exist_ok=True)
-    before = path.with_name(f"{path.name}.{writer()}")
-    before.write_text(text, encoding="utf-8")
-    before.replace(path)
+    write_whole(path, lambda file: file.write(text.encode()))
 
 
 def _get(path):

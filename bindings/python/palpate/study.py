@@ -17,8 +17,9 @@ import numpy
 from distributed import Client
 
 from . import Field, RenderSetup, Trace, __version__, load, replay
-from .distributed import Name, Progress, check_workers, each_piece, seen, writer
+from .distributed import Name, Progress, check_workers, each_piece, seen
 from .trace import COLUMNS
+from .whole_files import make_folder, write_whole
 
 
 @functools.lru_cache(maxsize=1)
@@ -30,12 +31,10 @@ def _field(source, options):
 
 def _write(path, key, trace):
     """Whole or not at all; `key` says of what."""
-    before = path.with_name(f"{path.name}.{writer()}")
     rest = json.dumps({"key": key, "summary": trace.summary, "layer_names": list(trace.layer_names),
                        "nested_layers": trace.nested_layers, "has_tool": trace.has_tool})
-    with before.open("wb") as file:
-        numpy.savez_compressed(file, rest=rest, **{name: getattr(trace, name) for name in COLUMNS})
-    before.replace(path)
+    arrays = {name: getattr(trace, name) for name in COLUMNS}
+    write_whole(path, lambda file: numpy.savez_compressed(file, rest=rest, **arrays))
 
 
 def _read(path):
@@ -97,8 +96,8 @@ def study(client: Client, source: Name, isovalue: Union[float, str], time: Any, 
         key.update(pickle.dumps(setup))
         work.append((name, key.hexdigest(), setup))
     check_workers(client)
-    Path(out).mkdir(parents=True, exist_ok=True)
     folder = os.path.abspath(out)
+    make_folder(Path(folder))
     one = functools.partial(_replay, source, options, isovalue, motion, folder)
     each_piece(client, "study", one, work, progress)
     return {name: _read(Path(folder) / f"{name}.npz")[1] for name in setups}

@@ -22,6 +22,7 @@ import numpy
 
 from .command_line import ABOVE_ZERO, Kind, Parser, answer_to, remark, run, say, whole, without_secrets
 from .errors import DeviceError, InputError, OutputError
+from .whole_files import make_folder, sync
 
 _Path = Union[str, Path]
 _Row = dict[str, Any]
@@ -137,11 +138,13 @@ def session(path: _Path, plan: Plan, ask: Callable[[Trial], int], felt: str = ""
             csv.writer(text, lineterminator="\n").writerow(line)
             try:
                 file.write(text.getvalue().encode())
+                sync(path)
             except OSError as error:
                 raise OutputError(f"{path}: cannot be written: {error.strerror}") from error
 
         if file.tell() == 0:
             put_down(COLUMNS)
+            sync(path.parent)
         rows = read(path, plan)
         for other in rows:
             if other["felt"] != felt:
@@ -262,7 +265,7 @@ def touching(volume: _Path, level: Union[float, str, None], device: str, name: s
         return int(given)
 
     def ask(trial):
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
         made.clear()
         try:
             return answer(trial)

@@ -1,6 +1,7 @@
 // Meshes in files: an isosurface for other programs, a tool from them. PLY, STL, OBJ, VTP.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 
 #include "palpate/surface.hpp"
@@ -20,10 +21,12 @@ MeshFormat mesh_format_from(const std::filesystem::path& path);
 bool names_a_mesh(const std::filesystem::path& path);
 
 /// The triangles of a mesh file, closed or not. Polygons are cut into triangles, vertices are
-/// unchanged and taken as mm, and normals are ignored. Read in a process of its own, VTP
-/// by VTK, the others by parsers of ours (docs/io_internals.md). Throws InputError, and passes on
-/// exceptions of `progress`.
-SurfaceMesh read_mesh(const std::filesystem::path& path, const OnProgress& progress = {});
+/// unchanged and taken as mm, and normals are ignored. Read in a process of its own, VTP by VTK,
+/// the others by parsers of ours (docs/io_internals.md). `memory`: the limit of that process
+/// [bytes]. With 0, it may take as much as a sound file of this size may need. Throws InputError,
+/// and passes on exceptions of `progress`.
+SurfaceMesh read_mesh(const std::filesystem::path& path, const OnProgress& progress = {},
+                      std::uint64_t memory = 0);
 
 /// Writes the mesh in the format of the path's extension, whole or not at all (PendingFile).
 /// Throws OutputError, and std::invalid_argument as above.

@@ -22,9 +22,9 @@ class WaitEnded : public OutputError {
     using OutputError::OutputError;
 };
 
-/// Throws OutputError if a file cannot be written here: no such folder, no permission, or a folder
-/// has its name. It makes and opens nothing, so a long run can begin with this check. PendingFile
-/// does it, too.
+/// Throws OutputError if a file cannot be written here: no such folder, no permission, a folder has
+/// its name, or no files can be made in its folder, as in /proc. It leaves nothing behind, so a
+/// long run can begin with this check. PendingFile does it, too.
 void check_output(const std::filesystem::path& path);
 
 /// True for two names of one file, through links and relative paths. Neither need exist. Devices

@@ -104,6 +104,7 @@ class RecordingWriter {
 
     Hand& of(int hand) { return *hands_[static_cast<std::size_t>(hand - 1)]; }
     void end_threads();
+    void keep_on_disk() const;
     std::vector<double> begins();
     void drain();
     void drain(int hand);

@@ -52,8 +52,9 @@ using ToolSpec = std::variant<PointSpec, SphereSpec, RodSpec, NeedleSpec, BurrSp
 /// "fingertip", the name of a CSV file with columns x, y, z, whose points are the tool's, or that
 /// of a mesh (.stl, .ply, .obj, .vtp). Lengths in files are mm in tool axes. Throws
 /// std::invalid_argument for other text, InputError for a file that cannot be read. Exceptions
-/// of `progress` are passed on.
-ToolSpec tool_spec_from(const std::string& text, const OnProgress& progress = {});
+/// of `progress` are passed on. `memory`: as for read_mesh().
+ToolSpec tool_spec_from(const std::string& text, const OnProgress& progress = {},
+                        std::uint64_t memory = 0);
 /// The tool with neighbouring points about `spacing` [mm] apart; those of a file stay as they are.
 /// Null for a point. Throws std::invalid_argument for impossible sizes, and for more points than a
 /// tool may have. Exceptions of `progress` are passed on.

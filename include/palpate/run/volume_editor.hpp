@@ -5,11 +5,13 @@
 #include <array>
 #include <chrono>
 #include <condition_variable>
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <thread>
 #include <vector>
@@ -41,10 +43,10 @@ using BeginRecording = std::function<void(const std::vector<Command>& history)>;
 
 class Streamer;
 
-/// Any thread may call any function. state() does not wait for an edit. Only apply() waits for
-/// samples of a store: an edit without all of its samples begins again when they have loaded, and
-/// other edits may come before it meanwhile. Functions that edit wait for edits under way. If
-/// `progress` is given, another thread does the work, and `progress` is called regularly meanwhile.
+/// Any thread may call any function. Only apply() waits until its edit is computed and the samples
+/// that it needs have been read. The other functions do not wait for edits. If the samples change
+/// while an edit is computed, it is computed again. If `progress` is given, another thread does the
+/// work, and `progress` is called regularly meanwhile.
 class VolumeEditor {
   public:
     /// Enough for a brush that works for seven minutes (30 MB).
@@ -66,7 +68,8 @@ class VolumeEditor {
     /// there is a brush.
     void step(std::chrono::steady_clock::time_point now);
     /// Starts a servo with the present samples and keeps it up to date until detach(), without
-    /// losing an edit. Edits wait until `start` returns. Its exceptions are passed on.
+    /// losing an edit. All other functions wait until `start` returns. Its exceptions are passed
+    /// on.
     std::unique_ptr<Servo> attach(Session session, const StartServo& start);
     /// No effect for a servo that is not attached.
     void detach(const Servo& servo);
@@ -78,15 +81,17 @@ class VolumeEditor {
     /// surface. The brush of a servo that was just attached pauses too. No effect for a servo that
     /// is not attached.
     void rest_brush(const Servo& servo, const std::shared_ptr<const Tool>& tool);
-    /// The brush of every attached servo. Nothing: no brush. Throws as check().
+    /// The brush of every attached servo. Nothing: no brush. A stroke that is being computed is
+    /// dropped. Throws as check().
     void set_brush(const std::optional<HandBrush>& brush);
-    /// Makes an edit, one step for undo(). Throws std::invalid_argument as check(Edit) does and for
-    /// one that takes more memory than there is, std::runtime_error for a servo that takes no
-    /// commands, and io::InputError for samples that cannot be read. Passes on exceptions of
+    /// Makes an edit, one step for undo(). Servos that take no commands at the moment get it later.
+    /// Throws std::invalid_argument as check(Edit) does and for one that takes more memory than
+    /// there is, and io::InputError for samples that cannot be read. Passes on exceptions of
     /// `progress`.
     void apply(const Edit& edit, const OnProgress& progress = {});
     /// False if there is nothing to undo, or redo. A brush that touches then pauses until it has
-    /// left the surface or set_brush() is called. Otherwise it would undo the undo.
+    /// left the surface or set_brush() is called. Otherwise it would undo the undo. An edit that is
+    /// being computed comes afterwards.
     bool undo(const OnProgress& progress = {});
     bool redo(const OnProgress& progress = {});
 
@@ -112,11 +117,16 @@ class VolumeEditor {
         std::optional<Touch> touch = {};
         bool resting = false;   // until it was in the air: it may touch without having moved
         std::int64_t from = 0;  // the first tick that surely follows the command of rest_brush()
-        bool lacks = false;     // it took no command when the newest version was sent
+        std::deque<command::Samples> waiting = {};  // for a servo that takes no commands now
         std::shared_ptr<const ToolBody> body = {};  // of the tool, for the last sweep
     };
     /// The samples that an edit reads, by the low corner of the box.
     using Fetched = std::map<std::array<int, 3>, std::vector<std::byte>>;
+    /// An edit of the version `from`.
+    struct Computed {
+        std::uint64_t from;
+        Edited edited;
+    };
     static constexpr std::size_t first_forgetting = 1024;
     struct Version {
         std::weak_ptr<const Samples> samples;  // expired once undo cannot come back to them
@@ -127,37 +137,40 @@ class VolumeEditor {
                  Pace pace, std::size_t most_versions);
     void forget_versions();
     using Lock = std::unique_lock<std::mutex>;
-    Lock locked(const std::stop_token& stop);
-    template <class Work>
-    void with_samples(Lock& lock, const std::stop_token& stop, const OnProgress& tell, Work&& work);
-    void fetch(const std::shared_ptr<const Samples>& samples, const Edit& edit, Fetched& fetched,
-               const std::stop_token& stop, const OnProgress& tell) const;
-    void read(const SampleBox& box, std::span<std::byte> out);
+    static Lock locked(std::mutex& mutex, const std::stop_token& stop);
+    Computed computed(Lock& lock, const Edit& edit, const std::stop_token& stop,
+                      const OnProgress& tell);
+    Edited compute(const std::shared_ptr<const Samples>& before, const Edit& edit, Fetched& fetched,
+                   const std::stop_token& stop, const OnProgress& tell) const;
+    bool use(Computed computed, const Edit& edit, EditStep step);
+    void interrupt_brush();
     void run(const std::stop_token& stop);
-    void brush(Hand& hand, std::chrono::steady_clock::time_point now);
-    bool brush_from(const Touch& from, const Touch& to, Hand& hand, double isovalue);
-    Edit edit_of(const Brush& brush, const Touch& from, const Touch& to, Hand& hand);
-    void edit(const Edit& edit, EditStep step, const OnProgress& progress = {});
+    void brush(Lock& lock, std::size_t hand, std::chrono::steady_clock::time_point now,
+               const std::stop_token& stop);
+    bool brush_to(Lock& lock, std::size_t hand, const Touch& to, double isovalue,
+                  const std::stop_token& stop);
+    Edit edit_of(Lock& lock, const Brush& brush, const Pose& from, const Pose& to, std::size_t hand,
+                 const std::stop_token& stop);
     bool go_to(SampleBox changed);
     void send(const command::Samples& command);
+    bool send_waiting();
     std::uint64_t version_of(const std::shared_ptr<const Samples>& samples) const;
     std::vector<Command> history() const;
     void set_problem(const std::string& problem);
     void publish();
 
-    mutable std::mutex mutex_;        // for as long as an edit takes, not while it is read for
+    mutable std::mutex mutex_;        // never while an edit is computed
+    std::mutex turn_;                 // of an edit that begins again. Taken before mutex_
     mutable std::mutex state_mutex_;  // of state_; a moment
     EditState state_;
-    Streamer* const streamer_;        // null: all samples are in memory
-    const std::uint64_t memory_;      // [bytes] of a volume that is read as it is felt
-    std::uint64_t edited_bytes_ = 0;  // of that, in the bricks that are edited now
-    std::stop_source reading_;
-    Fetched* fetched_ = nullptr;  // by the call that has the lock and edits
+    Streamer* const streamer_;    // null: all samples are in memory
+    const std::uint64_t memory_;  // [bytes] of a volume that is read as it is felt
+    std::stop_source brushing_;   // of the stroke that is being computed
     Editor editor_;
     std::vector<Hand> hands_;
     std::optional<HandBrush> brush_;
-    std::condition_variable_any brush_taken_up_;
-    bool new_step_ = true;  // the next change by a brush begins a step for undo
+    std::condition_variable_any has_work_;  // a brush, or versions for servos that took none
+    bool new_step_ = true;                  // the next change by a brush begins a step for undo
     std::chrono::steady_clock::time_point last_change_;  // by a brush
     std::string problem_;
     std::vector<Version> versions_;  // in order. The first has number 0

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from ..command_line import Kind, Parser, Stop, one_of, remark, say, tell, whole
 from ..command_line import run as command
+from ..whole_files import make_folder, put_in_place
 
 EXPERIMENTS = ("drift", "fall-through", "performance", "scaling", "fidelity", "stability", "walk-through",
                "penetration", "layers", "tools", "streaming", "notice", "recorded", "needle")  # in the order of docs/evaluation.md
@@ -86,7 +87,7 @@ def unfinished(path):
     is_new, part = not path.exists(), path / f".palpate-{uuid.uuid4().hex}"
     try:
         try:
-            path.mkdir(parents=True, exist_ok=True)
+            make_folder(path)
             part.mkdir(mode=0o700)
         except OSError as error:
             raise Stop(BAD_OUTPUT, f"{path}: {error.strerror}: choose another folder with --output") from error
@@ -150,7 +151,7 @@ def evaluate(chosen, words):
 
     def complete():
         for file in sorted(part.iterdir()):
-            file.replace(path / file.name)
+            put_in_place(file, path / file.name)
 
     with unfinished(path) as part:
         for name in names:
