@@ -17,6 +17,7 @@
 #include "bindings/python/progress.hpp"
 #include "bindings/python/setup.hpp"
 #include "palpate/baselines/methods.hpp"
+#include "palpate/run/no_effect.hpp"
 
 namespace palpate::python {
 namespace {
@@ -138,6 +139,10 @@ ProxyTrace follow(PlacedProxy& placed, const Doubles& hips,
                   const ProgressFunction& progress) {
     const std::vector<Vec3> points = hips_from(hips);
     if (!(scale > 0)) throw std::invalid_argument("scale: a number above 0 is needed");
+    if (!press) {
+        run::refuse_without_effect({{{"scale"}, "it is for the threshold of a penetrability"}},
+                                   {{"scale", scale != 1}});
+    }
     Way way = placed.way;
     way.scale = scale;
     if (press) way.penetrability = penetrability_for(*press, way.field, placed.proxy.isovalue);

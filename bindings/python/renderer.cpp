@@ -238,8 +238,9 @@ Renderer offline_renderer(const Field& field, const io::Level& level, const Rend
     const RenderSetup setup = asked;  // other threads may change theirs
     const GilReleased unlocked;
     const double isovalue = io::level_in(field.volume(), level);
-    RendererSettings settings =
-        run::offline_settings(setup_of(setup, offline_force()), field, isovalue, ctrl_c());
+    const run::RenderSetup made = setup_of(setup, offline_force());
+    run::refuse_without_effect(run::without_effect_in_replay(made), given_in(setup));
+    RendererSettings settings = run::offline_settings(made, field, isovalue, ctrl_c());
     if (const auto tool = tool_in(setup)) settings.tool = tool;
     return make_renderer(field, isovalue, settings);
 }

@@ -6,6 +6,7 @@
 #include "bindings/python/progress.hpp"
 #include "bindings/python/record.hpp"
 #include "palpate/io/mesh_file.hpp"
+#include "palpate/run/no_effect.hpp"
 
 namespace palpate::python {
 namespace {
@@ -15,6 +16,12 @@ using Indices = Numbers<std::uint32_t>;
 
 SurfaceMesh extract(const Field& field, const io::Level& level, double tolerance, bool normals,
                     const ProgressFunction& progress) {
+    if (field.interpolation() == Interpolation::linear) {
+        run::refuse_without_effect(
+            {{{"tolerance"}, "the facets of the linear field are exact"},
+             {{"normals"}, "those of the linear field are the normals of the facets"}},
+            {{"tolerance", tolerance != 0}, {"normals", normals}});
+    }
     SurfaceOptions options;
     options.tolerance = tolerance;
     options.normals = normals;
