@@ -1,9 +1,16 @@
 """Each argument that may be left out changes the result, or is refused in one line where it changes nothing. An argument that is
 added to the module has to be listed here."""
 
+import glob
+import http.server
 import inspect
 import os
+import pathlib
+import pickle
+import shutil
 import subprocess
+import threading
+import uuid
 
 import numpy
 import palpate
@@ -21,16 +28,9 @@ STEEP = palpate.Layers(layers=[palpate.Layer(name="a", level=ISOVALUE, propertie
 # Arguments that tell how fast, how often or how long something is done, or what a thing is called; and poses, which are data.
 OTHERS = {"progress", "threads", "name", "repeats", "seed", "history_bytes", "memory_bytes", "real_time", "rate", "device_rate", "slots",
           "interval", "batch", "cold", "valid", "armed", "released", "pointing", "orientation_xyzw", "version", "solid"}
-# Covered by tests of their own, which are named.
-ELSEWHERE = {
-    "LoadedVolume.__init__ isovalue": "volumes", "Editor.apply same_step": "live", "_GrowingImage.write_metadata range": "evaluate_parts",
-    "Run.__init__ setup": "live", "Run.__init__ device": "live", "validate volume": "live", "subject contestant": "evaluate_parts",
-    "closed_loop straight": "evaluate_parts", "command.UseLayers.__init__ same_surfaces": "live", "explore speed_mm_s": "evaluate_parts",
-    "explore touching": "evaluate_parts", "explore depth_mm": "evaluate_parts", "explore trajectories": "evaluate_parts",
-    "explore trajectory_s": "evaluate_parts", "explore wanted": "evaluate_parts", "layers_by_label like": "segmentations",
-    "Renderer.follow alternatives": "replay", "open_store cache": "stores", "open_store forbidden_is_missing": "threads",
-    "open_store channel": "stores", "open_store time": "stores", "LoadedVolume.__init__ level": "stores", "Store.read level": "stores",
-    "load series": "dicom_readers", "load frame_interval": "volumes", "command.UseLayers.__init__ volume": "live"}
+# Tested in these files, which have files to read.
+ELSEWHERE = {"load series": "dicom_readers", "open_store channel": "readers", "open_store time": "stores",
+             "LoadedVolume.__init__ level": "stores", "Store.read level": "stores"}
 
 
 def grid(volume):
@@ -56,7 +56,84 @@ def followed(**keywords):
     return trace.scp.tobytes(), trace.steps is None
 
 
+class Still:
+    def info(self):
+        return palpate.DeviceInfo(name="still")
+
+    def read(self):
+        return palpate.DeviceReading(status="ready")
+
+
+def in_zarr(**keywords):
+    subprocess.run([os.environ["PALPATE"], "convert", "v.nrrd", "v.zarr", "-q"], check=True)
+    return palpate.open_store("v.zarr", **keywords)
+
+
+def edited(**keywords):
+    editor = palpate.Editor(VOLUME)
+    editor.apply(palpate.Fill((0, 0, 0), (2, 2, 2), 9))
+    editor.apply(palpate.Fill((3, 3, 3), (4, 4, 4), 9), **keywords)
+    return editor.undo_steps
+
+
+def validated(**keywords):
+    name = f"{uuid.uuid4()}.csv"
+    with palpate.Run(palpate.load("v.nrrd"), palpate.Setup(isovalue=ISOVALUE, real_time=False)) as running:
+        running.record(name)
+    running.stop_recording()
+    return sorted(palpate.validate(name, **keywords))
+
+
+def explored(**keywords):
+    return palpate.explore(CUBIC, ISOVALUE, **{"trajectories": 1, "trajectory_s": 2.0, **keywords})["hips"].tobytes()
+
+
+class Server(http.server.SimpleHTTPRequestHandler):
+    """As S3 answers those who may not list what there is: a missing file is a forbidden one."""
+
+    def send_error(self, code, message=None, explain=None):
+        super().send_error(403 if code == 404 and "/c/" in self.path else code, message, explain)
+
+    def log_message(self, *arguments):
+        pass
+
+
+def from_a_server(**keywords):
+    """The samples of a store that lacks a chunk, or the error; and whether they are kept."""
+    for folder_before in ("v.zarr", "kept"):
+        shutil.rmtree(folder_before, ignore_errors=True)
+    in_zarr()
+    shutil.rmtree(glob.glob("v.zarr/*/c")[0])
+    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), Server) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        try:
+            store = palpate.open_store(f"http://127.0.0.1:{server.server_address[1]}/v.zarr", **keywords)
+            return samples(store.read((0, 0, 0), (4, 4, 4))), os.path.exists("kept")
+        except palpate.InputError:
+            return "refused", os.path.exists("kept")
+        finally:
+            server.shutdown()
+
+
+PERCENT = palpate.Layers(units="%", layers=[palpate.Layer(name="a", level=50)])
+LABELS = palpate.LoadedVolume(palpate.Volume(VOLUME.array // 100))
 DATA = [
+    ("LoadedVolume.__init__", "isovalue", 7.0, lambda **k: palpate.LoadedVolume(VOLUME, **k).isovalue),
+    ("Editor.apply", "same_step", True, edited),
+    ("Run.__init__", "setup", palpate.Setup(isovalue=99), lambda **k: palpate.Run(VOLUME, **k).isovalue),
+    ("Run.__init__", "device", Still(), lambda **k: palpate.Run(VOLUME, **k).device.name),
+    ("validate", "volume", "synthetic:sphere:9x9x9", validated),
+    ("subject", "contestant", "smooth", lambda **k: palpate.subject("synthetic:sphere:9x9x9", **k).field.interpolation),
+    ("closed_loop", "straight", True, lambda **k: palpate.closed_loop(
+        palpate.Renderer(CUBIC, ISOVALUE), "simulated:hand=press", 0.05, 1000, **k)["constrained"].tobytes()),
+    ("explore", "speed_mm_s", 9.0, explored), ("explore", "touching", 0.0, explored), ("explore", "depth_mm", 2.0, explored),
+    ("explore", "trajectories", 2, explored), ("explore", "trajectory_s", 0.4, explored), ("explore", "wanted", (20.0, 0.5), explored),
+    ("layers_by_label", "like", palpate.Layers(closing=3), lambda **k: palpate.layers_by_label(LABELS, **k).closing),
+    ("Renderer.follow", "alternatives", True, lambda **k: palpate.Renderer(CUBIC, ISOVALUE).follow(TIMES, HIPS, **k)["scp"].tobytes()),
+    ("command.UseLayers.__init__", "volume", VOLUME, lambda **k: palpate.command.UseLayers(PERCENT, **k).same_surfaces),
+    ("command.UseLayers.__init__", "same_surfaces", True, lambda **k: palpate.command.UseLayers(STEEP, **k).same_surfaces),
+    ("load", "frame_interval", 0.5, lambda **k: pickle.dumps(palpate.load("synthetic:beating:9x9x9", **k))),
+    ("open_store", "cache", "kept", from_a_server), ("open_store", "forbidden_is_missing", True, from_a_server),
     ("Volume.__init__", "spacing", (2, 2, 2), lambda **k: grid(palpate.Volume(VOLUME.array, **k))),
     ("Volume.__init__", "origin", (1, 2, 3), lambda **k: grid(palpate.Volume(VOLUME.array, **k))),
     ("Volume.__init__", "direction", numpy.diag([-1.0, -1, 1]), lambda **k: grid(palpate.Volume(VOLUME.array, **k))),
@@ -125,6 +202,8 @@ def test_an_argument_changes_the_result(function, name, value, call):
 
 def optional_arguments(owner, title):
     for name, one in list(vars(owner).items()):
+        if name.startswith("_") and name != "__init__":
+            continue
         function = one.__func__ if isinstance(one, staticmethod) else one
         if inspect.ismodule(one):
             yield from optional_arguments(one, f"{title}{name}.")
@@ -138,6 +217,8 @@ def optional_arguments(owner, title):
 def test_no_argument_is_forgotten():
     found = set(optional_arguments(palpate._palpate, ""))
     known = {one[:2] for one in DATA} | {tuple(text.split()) for text in ELSEWHERE}
+    for text, file in ELSEWHERE.items():
+        assert f"{text.split()[1]}=" in (pathlib.Path(__file__).parent / f"{file}_test.py").read_text(encoding="utf-8"), text
     assert len(found) > 60 and sorted(known - found) == []
     forgotten = sorted(f"{function} {name}" for function, name in found - known if name not in OTHERS and function != "streaming_stroke")
     assert forgotten == []
@@ -149,19 +230,6 @@ def played(**setup):
 
 def run(**setup):
     return palpate.Run(VOLUME, palpate.Setup(real_time=False, **setup))
-
-
-class Still:
-    def info(self):
-        return palpate.DeviceInfo(name="still")
-
-    def read(self):
-        return palpate.DeviceReading(status="ready")
-
-
-def in_zarr(**keywords):
-    subprocess.run([os.environ["PALPATE"], "convert", "v.nrrd", "v.zarr", "-q"], check=True)
-    return palpate.open_store("v.zarr", **keywords)
 
 
 LAYER = palpate.Layer(name="a", level=ISOVALUE)

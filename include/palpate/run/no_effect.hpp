@@ -1,5 +1,5 @@
-// Options and arguments that change nothing beside the others. The command line warns of them. The
-// Python module and the C interface refuse them.
+// Options and arguments that change nothing beside the others. The command line warns of them, and
+// the Python module refuses them.
 #pragma once
 
 #include <map>
