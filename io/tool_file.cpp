@@ -1,14 +1,17 @@
 // Makes a tool from the text of options.
 #include "palpate/io/tool_file.hpp"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "io/system/number.hpp"
 #include "palpate/io/csv.hpp"
 #include "palpate/io/mesh_file.hpp"
+#include "palpate/names.hpp"
 #include "palpate/session.hpp"
 
 namespace palpate::io {
@@ -19,7 +22,13 @@ constexpr const char* wanted =
     "(lengths in mm), or a file: points (.csv) or a mesh (.stl, .ply, .obj, .vtp)";
 
 [[noreturn]] void refuse(const std::string& text) {
-    throw std::invalid_argument("the tool '" + text + "' is not known: it is " + wanted);
+    static const std::vector<std::string> names = {"point", "sphere", "rod",      "needle",
+                                                   "burr",  "box",    "fingertip"};
+    const std::size_t end = std::min(text.find(':'), text.size());
+    const std::string near = nearest_name(std::string_view(text).substr(0, end), names);
+    const std::string sizes = near == "point" || near == "fingertip" ? "" : text.substr(end);
+    throw std::invalid_argument("the tool '" + text + "' is not known: it is " + wanted +
+                                (near.empty() ? near : " (did you mean " + near + sizes + "?)"));
 }
 
 /// "box:2,2,2"

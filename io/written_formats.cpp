@@ -94,6 +94,13 @@ fs::path data_file_of(const fs::path& path, bool compress) {
     return {};
 }
 
+std::string why_not_compressed(const fs::path& path) {
+    const std::string_view extension = written_extension_of(path);
+    if (extension != ".nii" && extension != ".raw") return {};
+    return std::string(extension) + " is never compressed: name it " +
+           (extension == ".nii" ? ".nii.gz" : ".nrrd");
+}
+
 std::string why_not_written(const fs::path& path, const Geometry& geometry, bool compress) {
     const std::string_view extension = written_extension_of(path);
     if (extension.empty()) {

@@ -307,6 +307,7 @@ void Run::send(const Command& command) {
 void Run::close_device() {
     stop_recording();
     stop();
+    left_behind_ = unanswered();
     last_resort_.reset();
     device_.reset();
 }
@@ -318,6 +319,7 @@ double Run::some_isovalue(const OnProgress& progress) const {
 
 void Run::use_device(const devices::DeviceChoice& device, const OnProgress& progress) {
     started_servo();  // throws before anything has changed
+    left_behind_.clear();
     Setup setup = setup_;
     setup.device = device;
     const DeviceInfo old = device_->info();

@@ -1,11 +1,9 @@
 // Warns of options that change nothing.
 #include "apps/options/no_effect.hpp"
+
+#include <algorithm>
+
 #include "apps/options/say.hpp"
-
-#include <fmt/format.h>
-
-#include <cstdio>
-#include <vector>
 
 namespace palpate::app {
 
@@ -14,15 +12,24 @@ bool is_given(const CLI::App& command, const std::string& option) {
     return found != nullptr && found->count() > 0;
 }
 
-void warn_of_no_effect(const CLI::App& command, std::initializer_list<const char*> options,
+void warn_of_no_effect(const CLI::App& command, const std::vector<std::string>& options,
                        const std::string& why) {
     std::vector<std::string> given;
-    for (const char* option : options) {
-        if (is_given(command, option)) given.emplace_back(option);
+    for (const std::string& option : options) {
+        if (is_given(command, option)) given.push_back(option);
     }
-    if (given.empty()) return;
-    say("palpate: warning: {} {} nothing: {}\n", fmt::join(given, ", "),
-        given.size() == 1 ? "does" : "do", why);
+    if (!given.empty()) say("palpate: warning: {}\n", run::no_effect_text(given, why));
+}
+
+void warn_of_no_effect(const CLI::App& command, const std::vector<run::NoEffect>& all) {
+    for (const auto& [names, why] : all) {
+        std::vector<std::string> options;
+        for (std::string name : names) {
+            std::ranges::replace(name, '_', '-');
+            options.push_back("--" + name);
+        }
+        warn_of_no_effect(command, options, why);
+    }
 }
 
 }  // namespace palpate::app

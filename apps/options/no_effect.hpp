@@ -2,8 +2,10 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <initializer_list>
 #include <string>
+#include <vector>
+
+#include "palpate/run/no_effect.hpp"
 
 namespace palpate::app {
 
@@ -13,7 +15,9 @@ bool is_given(const CLI::App& command, const std::string& option);
 /// Prints a warning on standard error, in one line, that names those of the options that were given
 /// and says why they do nothing: "palpate: warning: --playback does nothing: head.nrrd is not a
 /// sequence". Silent if none was given.
-void warn_of_no_effect(const CLI::App& command, std::initializer_list<const char*> options,
+void warn_of_no_effect(const CLI::App& command, const std::vector<std::string>& options,
                        const std::string& why);
+/// The same for each of these, whose options have underscores in place of hyphens.
+void warn_of_no_effect(const CLI::App& command, const std::vector<run::NoEffect>& all);
 
 }  // namespace palpate::app

@@ -171,24 +171,6 @@ void RenderOptions::add_force_to(CLI::App& command) {
         ->type_name("STATIC[,DYNAMIC]");
 }
 
-void RenderOptions::warn_of_no_effect() const {
-    if (std::holds_alternative<io::PointSpec>(given.tool)) {
-        app::warn_of_no_effect(
-            *command_,
-            {"--tool-spacing", "--rotational-stiffness", "--rotational-damping", "--torque-limit"},
-            "a point has no size and does not turn: choose another --tool");
-    }
-    if (std::holds_alternative<io::PointsSpec>(given.tool)) {
-        app::warn_of_no_effect(*command_, {"--tool-spacing"}, "the tool's file gives its points");
-    }
-    if (penetrability == Penetrability::ranges || minimum) {
-        app::warn_of_no_effect(*command_, {"--isovalue"},
-                               penetrability == Penetrability::ranges
-                                   ? "each --range has levels of its own"
-                                   : "the levels begin at --minimum");
-    }
-}
-
 run::RenderSetup RenderOptions::setup() const {
     const auto refuse = [](const std::string& option, const std::string& mode) {
         throw std::invalid_argument(option + " does nothing without --penetrability " + mode);
@@ -198,7 +180,6 @@ run::RenderSetup RenderOptions::setup() const {
     }
     if (minimum && penetrability != Penetrability::threshold) refuse("--minimum", "threshold");
     if (!ranges.empty() && penetrability != Penetrability::ranges) refuse("--range", "ranges");
-    warn_of_no_effect();
     run::RenderSetup setup = given;
     if (!labels.empty()) {
         setup.layers = run::layers_by_label(
@@ -214,6 +195,7 @@ run::RenderSetup RenderOptions::setup() const {
         }
         setup.penetrability = run::RangesSetup{threshold.value_or(1), ranges};
     }
+    warn_of_no_effect(*command_, run::without_effect_in_replay(setup));
     return setup;
 }
 

@@ -30,7 +30,6 @@ struct RenderOptions {
     run::RenderSetup setup() const;
 
   private:
-    void warn_of_no_effect() const;
     void add_penetrability_to(CLI::App& command);
     void add_force_to(CLI::App& command);
 

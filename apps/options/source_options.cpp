@@ -6,11 +6,9 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "apps/options/no_effect.hpp"
 #include "apps/options/say.hpp"
 #include "apps/options/values.hpp"
 #include "palpate/filters/dequantize.hpp"
-#include "palpate/io/address.hpp"
 #include "palpate/names.hpp"
 #include "palpate/renderer.hpp"
 #include "palpate/scenes/volumes.hpp"
@@ -122,37 +120,6 @@ run::Source SourceOptions::source() const {
     }
     source.dequantize = dequantize;
     return source;
-}
-
-void SourceOptions::warn_of_no_effect(const run::Source& source) const {
-    const auto warn = [&](std::initializer_list<const char*> options, const std::string& why) {
-        app::warn_of_no_effect(*command_, options, name_of(source) + why);
-    };
-    const auto* file = std::get_if<run::FileSource>(&source.from);
-    const auto* store = std::get_if<run::StoreSource>(&source.from);
-    if (store == nullptr) {
-        warn({"--level", "--channel", "--memory", "--coarse-first", "--all-times", "--cache",
-              "--cache-size", "--forbidden-is-missing"},
-             " is read as a whole");
-    } else if (!io::is_web_address(store->address)) {
-        warn({"--cache", "--cache-size", "--forbidden-is-missing"}, " is on this machine");
-    } else if (cache_folder.empty()) {
-        warn({"--cache-size"}, " is read without --cache");
-    }
-    const bool described = file ? !file->raw : store && !store->options.raw;
-    if (described) warn({"--skip", "--byte-order"}, " is read as its header describes it");
-}
-
-void SourceOptions::warn_of_no_effect(const run::LoadedVolume& loaded) const {
-    const auto warn = [&](std::initializer_list<const char*> options, const std::string& why) {
-        app::warn_of_no_effect(*command_, options, loaded.name + why);
-    };
-    if (loaded.sequence.count() < 2) {
-        warn({"--frame-interval", "--playback", "--once", "--sequence-memory"},
-             " is not a sequence");
-    }
-    if (loaded.time_steps < 2) warn({"--time-step"}, " has a single frame");
-    if (!loaded.format.starts_with("DICOM")) warn({"--series"}, " is not a DICOM series");
 }
 
 void add_field_options(CLI::App& command, run::FieldSetup& field) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "apps/options/no_effect.hpp"
 #include "palpate/run/setup.hpp"
 #include "palpate/run/source.hpp"
 
@@ -38,8 +39,9 @@ struct SourceOptions {
     run::Source source() const;
     /// Warn on standard error of options that do nothing for this source or volume. The latter
     /// also knows the options of playback (RunOptions).
-    void warn_of_no_effect(const run::Source& source) const;
-    void warn_of_no_effect(const run::LoadedVolume& loaded) const;
+    void warn_of_no_effect(const auto& source_or_volume) const {
+        app::warn_of_no_effect(*command_, run::without_effect(source_or_volume));
+    }
 
   private:
     const CLI::App* command_ = nullptr;

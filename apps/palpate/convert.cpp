@@ -169,12 +169,8 @@ void convert(const CLI::App& command, const ConvertWords& words) {
     } else {
         warn_of_no_effect(command, {"--ome-version", "--chunk", "--compression", "--threads"},
                           words.output + " is not OME-Zarr");
-        const auto extension = io::written_extension_of(words.output);
-        if (extension == ".nii" || extension == ".raw") {
-            warn_of_no_effect(command, {"--compress"},
-                              std::string(extension) + " is never compressed: " +
-                                  (extension == ".nii" ? "name it .nii.gz" : "name it .nrrd"));
-        }
+        const std::string why = io::why_not_compressed(words.output);
+        if (!why.empty()) warn_of_no_effect(command, {"--compress"}, why);
     }
     warn_of_no_effect(command, {"--coarse-first"}, "each part is read once");
     const Taken taken = opened(words);

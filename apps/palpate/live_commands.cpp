@@ -77,6 +77,10 @@ static void for_each_force(ForceSettings& force, auto&& visit) {
 /// A command that changes one setting.
 Command LiveCommands::setting_from(const CommandWords& words, RendererSettings& next) const {
     const std::string& name = words.name();
+    if (name == "set") {
+        const CommandWords named = words.as("set NAME VALUE, as in set limits.maximum_force 1");
+        return change(next, named.expect(3)[1], named.number(2));
+    }
     bool found = false;
     std::string forces;
     for_each_force(next.force, [&](std::string_view one, double& value) {
@@ -91,7 +95,7 @@ Command LiveCommands::setting_from(const CommandWords& words, RendererSettings& 
     throw std::invalid_argument(
         "there is no command '" + name + "'; there are isovalue, " + forces +
         "friction, penetrability, layers, forces, freeze, clutch, lift, scale, brush, carve, add, "
-        "smooth, paint, fill, undo, redo, save, play, pause, step, seek, loop, quit");
+        "smooth, paint, fill, undo, redo, save, play, pause, step, seek, loop, set, quit");
 }
 
 DataRequest LiveCommands::take_up(const std::optional<run::HandBrush>& brush) {

@@ -18,6 +18,7 @@
 #include "apps/palpate/offline_summary.hpp"
 #include "apps/palpate/outputs.hpp"
 #include "apps/palpate/progress.hpp"
+#include "io/recording/settings_json.hpp"
 #include "palpate/io/csv.hpp"
 #include "palpate/io/trace.hpp"
 #include "palpate/run/replay.hpp"
@@ -203,7 +204,9 @@ void replay(const ReplayOptions& options) {
     if (poses) files.push_back(&poses->file());
     io::PendingFile::commit_together(files);
     if (options.json) {
-        print_json(summary_json(summary));
+        nlohmann::ordered_json json = summary_json(summary);
+        json["settings"] = io::to_json(renderer.settings);
+        print_json(json);
     } else if (!options.source.quiet && !table_on_standard_output) {
         fmt::print("{}", summary_text(summary));
     }

@@ -19,6 +19,7 @@
 #include "apps/palpate/remote.hpp"
 #include "apps/palpate/run_terminal.hpp"
 #include "apps/palpate/window.hpp"
+#include "io/recording/settings_json.hpp"
 #include "palpate/run/run.hpp"
 
 namespace palpate::app {
@@ -59,6 +60,7 @@ nlohmann::ordered_json reports_json(const std::vector<LiveHand>& hands, double s
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const LiveHand& hand : hands) {
         auto report = report_json(hand.run->report(), seconds, hand.device);
+        report["settings"] = io::to_json(hand.run->settings());
         if (hands.size() == 1) return report;
         report["hand"] = list.size() + 1;
         report["problem"] = hand.run->device_problem();

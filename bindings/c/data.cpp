@@ -25,6 +25,7 @@ run::HandBrush hand_brush(const palpate_brush& asked) {
 
 Brush stroke_brush(const palpate_brush& asked) {
     if (asked.as_tool) throw std::invalid_argument("brush.as_tool: is for a hand's brush only");
+    check(hand_brush(asked));  // also what a stroke does not use
     Brush brush;
     brush.kind = one_of<BrushKind>(asked.kind, "brush.kind");
     brush.radius = asked.radius;

@@ -33,6 +33,7 @@ DeviceInfo info_from(const palpate_own_device& asked) {
     info.limits.maximum_force = asked.maximum_force;
     info.limits.maximum_torque = asked.maximum_torque;
     info.limits.rate = std::min(info.limits.rate, asked.rate);
+    info.limits.delay = devices::exchange_delay(1 / asked.rate);
     if (asked.stiffness != 0) info.stiffness = asked.stiffness;
     if (asked.physical_damping != 0) info.limits.physical_damping = asked.physical_damping;
     const Vec3 low = vec3(asked.workspace_low), high = vec3(asked.workspace_high);

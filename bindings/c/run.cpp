@@ -178,6 +178,8 @@ extern "C" PALPATE_API palpate_status palpate_run_use_device(palpate_run* run, c
         if (calls_back) throw WrongState("a callback cannot change the device: use another thread");
         const auto lock = locked(run);
         run->run->use_device(devices::parse_device(&given(device, "device")), progress_of_thread());
+        const std::string& before = run->run->left_behind();
+        if (!before.empty()) throw devices::DeviceError(before + "; the run has the new device");
     });
 }
 

@@ -113,6 +113,7 @@ std::vector<Vec3> points_from(const Doubles& array, const char* name) {
     std::vector<Vec3> points(static_cast<std::size_t>(array.shape(0)));
     const double* from = array.data();
     Stoppable work;
+    const GilReleasedForRows unlocked(points.size());
     for (Vec3& point : points) {
         point = Vec3(from[0], from[1], from[2]);
         from += 3;

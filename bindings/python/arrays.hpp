@@ -46,8 +46,8 @@ inline Eigen::Vector4d xyzw(const Quaternion& q) {
     return q.coeffs();
 }
 
-/// `of(row)` of each row: a number (small whole ones become int), or an Eigen vector of fixed size,
-/// or x, y, z, w of a quaternion, in a row of its own.
+/// `of(row)` of each row, which needs no GIL: a number (small whole ones become int), or an Eigen
+/// vector of fixed size, or x, y, z, w of a quaternion, in a row of its own.
 template <class Row, class Of>
 auto column(const std::vector<Row>& rows, const Of& of) {
     using Value = std::decay_t<decltype(of(rows.front()))>;
@@ -55,6 +55,7 @@ auto column(const std::vector<Row>& rows, const Of& of) {
         using Number = std::conditional_t<std::same_as<Value, std::int8_t>, int, Value>;
         py::array_t<Number> array(static_cast<py::ssize_t>(rows.size()));
         Number* to = array.mutable_data();
+        const GilReleasedForRows unlocked(rows.size());
         for (const Row& row : rows) *to++ = of(row);
         return array;
     } else if constexpr (std::same_as<Value, Quaternion>) {
@@ -63,6 +64,7 @@ auto column(const std::vector<Row>& rows, const Of& of) {
         constexpr py::ssize_t width = Value::SizeAtCompileTime;
         py::array_t<double> array({static_cast<py::ssize_t>(rows.size()), width});
         double* to = array.mutable_data();
+        const GilReleasedForRows unlocked(rows.size());
         for (const Row& row : rows) {
             const Value value = of(row);
             for (int i = 0; i < width; ++i) *to++ = value[i];

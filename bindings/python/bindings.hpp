@@ -7,31 +7,12 @@
 namespace palpate::python {
 
 void bind_errors();
-void bind_volumes(py::module_& module);
-void bind_filters(py::module_& module);
-void bind_files(py::module_& module);
-void bind_stores(py::module_& module);
-void bind_growing_images(py::module_& module);
-void bind_dequantize_parts(py::module_& module);
-void bind_fields(py::module_& module);
-void bind_surfaces(py::module_& module);
-void bind_settings(py::module_& module);
-void bind_layers(py::module_& module);
-void bind_tools(py::module_& module);
-void bind_render_setup(py::module_& module);
-void bind_renderer(py::module_& module);
-void bind_offline(py::module_& module);
-void bind_devices(py::module_& module);
-void bind_snapshots(py::module_& module);
-void bind_commands(py::module_& module);
-void bind_servo(py::module_& module);
-void bind_edits(py::module_& module);
-void bind_run(py::module_& module);
-void bind_recordings(py::module_& module);
-void bind_evaluation(py::module_& module);
-void bind_proxies(py::module_& module);
-void bind_tool_paths(py::module_& module);
-void bind_closed_loop(py::module_& module);
-void bind_scenes(py::module_& module);
+
+using Bind = void(py::module_& module);
+Bind bind_volumes, bind_filters, bind_files, bind_stores, bind_growing_images,
+    bind_dequantize_parts, bind_fields, bind_surfaces, bind_settings, bind_layers, bind_tools,
+    bind_render_setup, bind_renderer, bind_offline, bind_devices, bind_snapshots, bind_commands,
+    bind_servo, bind_edits, bind_run, bind_recordings, bind_evaluation, bind_proxies,
+    bind_tool_paths, bind_closed_loop, bind_scenes;
 
 }  // namespace palpate::python

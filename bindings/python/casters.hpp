@@ -10,6 +10,8 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <cstddef>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -49,6 +51,19 @@ class GilReleased {
 
   private:
     PyThreadState* thread_;
+};
+
+/// The same for a loop over so many rows. A short one keeps the GIL, because handing it over and
+/// waiting for it would take longer.
+class GilReleasedForRows {
+  public:
+    explicit GilReleasedForRows(std::size_t rows) {
+        constexpr std::size_t many = 4096;
+        if (rows >= many) unlocked_.emplace();
+    }
+
+  private:
+    std::optional<GilReleased> unlocked_;
 };
 
 /// What a function of Python returns. Only the call itself is unwound if the interpreter ends

@@ -4,6 +4,7 @@
 #include "bindings/python/bindings.hpp"
 #include "bindings/python/record.hpp"
 #include "palpate/io/layers_file.hpp"
+#include "palpate/run/no_effect.hpp"
 
 namespace palpate::python {
 namespace {
@@ -71,7 +72,12 @@ void bind_commands(py::module_& module) {
         .def(
             py::init([](const std::optional<io::LayersFile>& layers,
                         const std::optional<Volume>& volume, bool same_surfaces) {
-                if (!layers) return command::UseLayers{};
+                if (!layers) {
+                    run::refuse_without_effect(
+                        {{{"volume", "same_surfaces"}, "there are no layers"}},
+                        {{"volume", volume.has_value()}, {"same_surfaces", same_surfaces}});
+                    return command::UseLayers{};
+                }
                 if (layers->units == "%" && !volume) {
                     throw std::invalid_argument("layers in percent need the volume they are for");
                 }

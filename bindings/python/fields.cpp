@@ -7,6 +7,7 @@
 #include "bindings/python/record.hpp"
 #include "palpate/field.hpp"
 #include "palpate/proxy.hpp"
+#include "palpate/run/no_effect.hpp"
 
 namespace palpate::python {
 namespace {
@@ -50,6 +51,10 @@ std::optional<std::pair<Vec3, Vec3>> ray(const Field& field, const io::Level& le
 using Moments = std::vector<std::pair<double, Volume>>;
 
 std::shared_ptr<Samples> samples_from(const Moments& moments, double period) {
+    if (moments.size() < 2) {
+        run::refuse_without_effect({{{"period"}, "a single frame does not repeat"}},
+                                   {{"period", period != 0}});
+    }
     std::vector<Frame> frames;
     for (const auto& [time, volume] : moments) frames.push_back({time, volume});
     return std::make_shared<Samples>(std::move(frames), period);
@@ -93,6 +98,10 @@ void bind_samples(py::module_& module) {
             "volume",
             [](const Samples& self, double time) {
                 check_numbers("time", time, ranges::finite);
+                if (self.frames().size() < 2) {
+                    run::refuse_without_effect({{{"time"}, "these samples are not a sequence"}},
+                                               {{"time", time != 0}});
+                }
                 return flattened(self, self.moment_at(time), ctrl_c());
             },
             py::arg("time") = 0.0, py::call_guard<GilReleased>(),

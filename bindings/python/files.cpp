@@ -10,6 +10,7 @@
 #include "palpate/io/trajectory.hpp"
 #include "palpate/io/volume_file.hpp"
 #include "palpate/io/written_formats.hpp"
+#include "palpate/run/no_effect.hpp"
 #include "palpate/run/source.hpp"
 #include "palpate/run/statistics.hpp"
 
@@ -61,6 +62,9 @@ run::LoadedVolume load(const fs::path& name, const LoadOptions& options,
     const auto tell = progress_of(progress);
     const GilReleased unlocked;
     run::LoadedVolume loaded = run::load(source, tell);
+    run::refuse_without_effect(run::without_effect(loaded),
+                               {{"series", !options.series.empty()},
+                                {"frame_interval", options.frame_interval.has_value()}});
     if (loaded.streamed) loaded.streamed->store = destroyed_here_only(loaded.streamed->store);
     return loaded;
 }
@@ -199,6 +203,8 @@ void bind_load(py::module_& module) {
 
 void write(const Volume& volume, const fs::path& path, bool compress,
            const ProgressFunction& progress) {
+    const std::string why = io::why_not_compressed(path);
+    if (!why.empty()) run::refuse_without_effect({{{"compress"}, why}}, {{"compress", compress}});
     io::WriteOptions options;
     options.compress = compress;
     options.progress = progress_of(progress);

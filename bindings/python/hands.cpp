@@ -12,16 +12,19 @@ std::vector<Quaternion> quaternions_from(const Doubles& xyzw) {
     if (xyzw.ndim() != 2 || xyzw.shape(1) != 4) {
         throw std::invalid_argument("orientation_xyzw: an array of shape (n, 4) is needed");
     }
-    std::vector<Quaternion> turns;
-    for (py::ssize_t i = 0; i < xyzw.shape(0); ++i) {
-        const double* q = xyzw.data(i, 0);
-        turns.emplace_back(q[3], q[0], q[1], q[2]);
+    std::vector<Quaternion> turns(static_cast<std::size_t>(xyzw.shape(0)));
+    const double* from = xyzw.data();
+    const GilReleasedForRows unlocked(turns.size());
+    for (Quaternion& turn : turns) {
+        turn = Quaternion(from);  // x, y, z, w
+        from += 4;
     }
     return turns;
 }
 
 /// The numbers of the rows in place of times.
 io::Trajectory without_times(std::vector<Vec3> positions, std::vector<Quaternion> turns) {
+    const GilReleasedForRows unlocked(positions.size());
     std::vector<double> rows(positions.size());
     std::iota(rows.begin(), rows.end(), 0);
     return io::checked_trajectory(std::move(rows), std::move(positions), std::move(turns));
@@ -37,8 +40,10 @@ io::Trajectory trajectory_from(const Doubles& time, const Doubles& position,
     }
     std::vector<Quaternion> turns;
     if (orientation) turns = quaternions_from(*orientation);
-    return io::checked_trajectory({time.data(), time.data() + time.size()},
-                                  points_from(position, "position"), std::move(turns));
+    std::vector<Vec3> positions = points_from(position, "position");
+    const GilReleasedForRows unlocked(positions.size());
+    return io::checked_trajectory({time.data(), time.data() + time.size()}, std::move(positions),
+                                  std::move(turns));
 }
 
 io::Trajectory poses_from(const Doubles& position, const Doubles& orientation) {

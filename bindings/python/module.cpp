@@ -59,31 +59,19 @@ PYBIND11_MODULE(_palpate, module) {
     using namespace palpate::python;
     module.attr("__version__") = PALPATE_VERSION;
     bind_errors();
-    bind_volumes(module);
-    bind_filters(module);
-    bind_files(module);
-    bind_stores(module);
-    bind_growing_images(module);
-    bind_dequantize_parts(module);
-    bind_fields(module);
-    bind_surfaces(module);
-    bind_settings(module);
-    bind_layers(module);
-    bind_tools(module);
-    bind_render_setup(module);
-    bind_renderer(module);
-    bind_offline(module);
-    bind_devices(module);
-    bind_snapshots(module);
-    bind_commands(module);
-    bind_servo(module);
-    bind_edits(module);
-    bind_run(module);
-    bind_recordings(module);
-    bind_evaluation(module);
-    bind_proxies(module);
-    bind_tool_paths(module);
-    bind_closed_loop(module);
-    bind_scenes(module);
+    for (Bind* const bind : {&bind_volumes,        &bind_filters,
+                             &bind_files,          &bind_stores,
+                             &bind_growing_images, &bind_dequantize_parts,
+                             &bind_fields,         &bind_surfaces,
+                             &bind_settings,       &bind_layers,
+                             &bind_tools,          &bind_render_setup,
+                             &bind_renderer,       &bind_offline,
+                             &bind_devices,        &bind_snapshots,
+                             &bind_commands,       &bind_servo,
+                             &bind_edits,          &bind_run,
+                             &bind_recordings,     &bind_evaluation,
+                             &bind_proxies,        &bind_tool_paths,
+                             &bind_closed_loop,    &bind_scenes})
+        bind(module);
     refuse_unmade_objects(module);
 }

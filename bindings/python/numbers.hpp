@@ -73,11 +73,19 @@ bool holds_all(const py::array& array) {
     return true;
 }
 
+/// An array of what NumPy reads, or shares by DLPack alone. Null where there is none.
+inline py::array any_array_from(py::handle given) {
+    if (!py::hasattr(given, "__dlpack__") || py::hasattr(given, "__array__")) {
+        return py::array::ensure(given);
+    }
+    return py::module_::import("numpy").attr("from_dlpack")(given);
+}
+
 /// Null for what has other numbers, or none at all.
 template <class T>
 Numbers<T> numbers_from(py::handle given) {
     refuse_masked(given);
-    const auto array = py::array::ensure(given);
+    const py::array array = any_array_from(given);
     const char kind = array ? array.dtype().kind() : '?';
     bool good = kind == 'i' || kind == 'u' || kind == 'f';
     if constexpr (std::is_floating_point_v<T>) {

@@ -12,6 +12,7 @@
 #include "bindings/python/renderer.hpp"
 #include "bindings/python/trace_table.hpp"
 #include "palpate/io/csv.hpp"
+#include "palpate/setting.hpp"
 
 namespace palpate::python {
 namespace {
@@ -69,6 +70,7 @@ void read_column(const TraceColumn<Path...>& one, const py::object& given, std::
                                     std::to_string(rows.size()) + " ticks");
     }
     const double* from = array.data();
+    const GilReleasedForRows unlocked(rows.size());
     for (Row& row : rows) {
         if constexpr (width == 3) {
             one.part(row) = Vec3(from);
@@ -76,7 +78,7 @@ void read_column(const TraceColumn<Path...>& one, const py::object& given, std::
             one.part(row) = Quaternion(from);  // x, y, z, w
         } else {
             if (std::is_integral_v<Value> && !holds<Value>(*from)) {
-                throw std::invalid_argument(name + " = " + std::string(py::str(py::float_(*from))) +
+                throw std::invalid_argument(name + " = " + number_text(*from) +
                                             ": is not whole, or too large");
             }
             one.part(row) = static_cast<Value>(*from);
@@ -91,6 +93,8 @@ void write_trace(const std::filesystem::path& path, const py::dict& columns,
     const auto ticks = columns["t"].cast<Doubles>().size();
     std::vector<Row> rows(static_cast<std::size_t>(ticks));
     for_each_column([&](const auto& one) { read_column(one, columns[one.name], rows); });
+    ReportedItems slices(ctrl_c(), rows.size(), updates_in_slice);
+    const GilReleased unlocked;
     io::TraceWriter writer(path, {}, {layer_names, nested_layers, tool});
     const auto count = static_cast<int>(layer_names.size());
     for (const Row& row : rows) {
@@ -99,6 +103,7 @@ void write_trace(const std::filesystem::path& path, const py::dict& columns,
             throw std::invalid_argument("layer or inside is not that of one of the layer_names");
         }
         writer.add(row);
+        slices.done();
     }
     writer.commit();
 }

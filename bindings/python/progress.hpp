@@ -30,18 +30,19 @@ inline OnProgress ctrl_c() {
     return progress_of(none);
 }
 
-/// Work of many alike items with the GIL, which Ctrl-C stops: done() after so many.
+/// Work of many alike items, with or without the GIL, which Ctrl-C stops: done() after so many.
 class Stoppable {
   public:
     void done(std::size_t bytes) {
         done_ += bytes;
         if (done_ < between) return;
         done_ = 0;
-        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        stop_(0);
     }
 
   private:
     static constexpr std::size_t between = std::size_t{4} << 20;  // milliseconds
+    OnProgress stop_ = ctrl_c();
     std::size_t done_ = 0;
 };
 

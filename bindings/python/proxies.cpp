@@ -17,6 +17,7 @@
 #include "bindings/python/progress.hpp"
 #include "bindings/python/setup.hpp"
 #include "palpate/baselines/methods.hpp"
+#include "palpate/run/no_effect.hpp"
 
 namespace palpate::python {
 namespace {
@@ -138,6 +139,10 @@ ProxyTrace follow(PlacedProxy& placed, const Doubles& hips,
                   const ProgressFunction& progress) {
     const std::vector<Vec3> points = hips_from(hips);
     if (!(scale > 0)) throw std::invalid_argument("scale: a number above 0 is needed");
+    if (!press) {
+        run::refuse_without_effect({{{"scale"}, "it is for the threshold of a penetrability"}},
+                                   {{"scale", scale != 1}});
+    }
     Way way = placed.way;
     way.scale = scale;
     if (press) way.penetrability = penetrability_for(*press, way.field, placed.proxy.isovalue);
@@ -341,8 +346,9 @@ std::pair<py::array_t<double>, py::array_t<double>> cast_rays(const Field& field
     const Vec3 none = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
     std::vector<Vec3> points(rays.from.size(), none), normals(rays.from.size(), none);
     {
+        ReportedItems slices(ctrl_c(), points.size(), batches_in_slice);
         const GilReleased unlocked;
-        for (std::size_t i = 0; i < points.size(); ++i) {
+        for (std::size_t i = 0; i < points.size(); ++i, slices.done()) {
             const RayHit hit = cast_ray(field, isovalue, rays.from[i], rays.to[i]);
             if (!hit.hit) continue;
             points[i] = hit.point;
@@ -380,7 +386,22 @@ void bind_trace(py::module_& module) {
         .def_readonly("steps", &ProxyTrace::steps,
                       "None, or all steps of all updates, as arrays by name: tick, kind (index in\n"
                       "STEP_KINDS), point and goal [mm, physical]; cell, axis and sign of the\n"
-                      "tetrahedron, (n, 3) each.");
+                      "tetrahedron, (n, 3) each.")
+        .def(py::pickle(
+            [](const ProxyTrace& t) {
+                return py::make_tuple(t.scp, t.density, t.isovalue, t.constrained, t.unfinished,
+                                      t.tetrahedra, t.update_ns, t.steps);
+            },
+            [](const py::tuple& state) {
+                ProxyTrace made(0);
+                std::size_t next = 0;
+                const auto take = [&](auto&... parts) {
+                    ((parts = state[next++].cast<std::remove_reference_t<decltype(parts)>>()), ...);
+                };
+                take(made.scp, made.density, made.isovalue, made.constrained, made.unfinished,
+                     made.tetrahedra, made.update_ns, made.steps);
+                return made;
+            }));
 }
 
 }  // namespace

@@ -33,9 +33,11 @@ std::string write_to(const py::object& device, const Wrench& wrench) {
     });
 }
 
-/// A spring is sampled no faster than the device is asked.
+/// A spring is sampled no faster than the device is asked, and acts later by the exchange with the
+/// thread that asks.
 DeviceInfo at_rate(DeviceInfo info, double rate) {
     info.limits.rate = std::min(info.limits.rate, rate);
+    info.limits.delay += devices::exchange_delay(1 / rate);
     return info;
 }
 

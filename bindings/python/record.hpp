@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -104,6 +105,44 @@ template <class... Options, class... Path>
 void add_part(py::class_<Options...>& kind, const char* name, const char* about, Path... path) {
     kind.def_property_readonly(name, member_of(path...), about);
 }
+
+/// A class of results: its members cannot be set. It is pickled by them.
+template <class T>
+class Result {
+  public:
+    Result(py::module_& module, const char* name, const char* about)
+        : class_(module, name, about) {}
+
+    /// As add_part().
+    template <class Owner, class First, class... Path>
+    Result& part(const char* name, const char* about, First Owner::*first, Path... path) {
+        add_part(class_, name, about, first, path...);
+        using Value = decltype(member_of(first, path...)(std::declval<const T&>()));
+        parts_.emplace_back(name, [=](T& whole, const py::handle& value) {
+            ((whole.*first).*....*path) = value.cast<Value>();
+        });
+        return *this;
+    }
+    /// After all members.
+    py::class_<T>& done() {
+        return class_.def(py::pickle(
+            [parts = parts_](const py::object& self) {
+                py::list values;
+                for (const auto& [name, set] : parts) values.append(self.attr(name));
+                return py::tuple(values);
+            },
+            [parts = parts_](const py::tuple& values) {
+                T made;
+                std::size_t next = 0;
+                for (const auto& [name, set] : parts) set(made, values[next++]);
+                return made;
+            }));
+    }
+
+  private:
+    py::class_<T> class_;
+    std::vector<std::pair<const char*, std::function<void(T&, const py::handle&)>>> parts_;
+};
 
 template <class T>
 class Record {

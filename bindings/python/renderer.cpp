@@ -12,9 +12,11 @@
 namespace palpate::python {
 namespace {
 
-SharedRenderer live_renderer(const Field& field, const io::Level& level, const RenderSetup& setup,
+SharedRenderer live_renderer(const Field& field, const io::Level& level, const RenderSetup& asked,
                              const std::optional<DeviceLimits>& limits,
                              const std::optional<DeviceTransform>& transform) {
+    const RenderSetup setup = asked;  // other threads may change theirs
+    const GilReleased unlocked;
     const double isovalue = io::level_in(field.volume(), level);
     ForceSettings usual;
     usual.limit = limits.value_or(DeviceLimits{}).maximum_force;
@@ -54,6 +56,7 @@ std::vector<DeviceState> states_from(const Doubles& time, const Doubles& positio
         throw std::invalid_argument("as many times, positions and pointings are needed");
     }
     std::vector<DeviceState> states(places.size());
+    const GilReleasedForRows unlocked(states.size());
     for (std::size_t i = 0; i < states.size(); ++i) {
         states[i].time = time.data()[i];
         states[i].position = places[i];
@@ -62,26 +65,37 @@ std::vector<DeviceState> states_from(const Doubles& time, const Doubles& positio
     return states;
 }
 
-/// Calls move(copy) without the GIL. Afterwards the renderer is as that copy; if it throws, as
-/// before.
-template <class Move>
-void moved_without_gil(SharedRenderer& renderer, const Move& move) {
-    Renderer own = renderer.changeable();
-    struct Moving {
-        bool& moves;
-        explicit Moving(bool& now) : moves(now) { moves = true; }
-        ~Moving() { moves = false; }
-    } const moving(renderer.moves);
-    {
-        const GilReleased unlocked;
-        move(own);
+/// Other threads cannot change the renderer while this exists, also if the GIL is released.
+class Moving {
+  public:
+    explicit Moving(SharedRenderer& renderer) : renderer_(renderer.changeable()) {
+        renderer_.moves = true;
     }
-    static_cast<Renderer&>(renderer) = std::move(own);
-}
+    ~Moving() { renderer_.moves = false; }
+    Moving(const Moving&) = delete;
+    Moving& operator=(const Moving&) = delete;
+
+    /// Calls move(copy) without the GIL. Afterwards the renderer is as that copy; if it throws, as
+    /// before.
+    template <class Move>
+    void without_gil(const Move& move) {
+        Renderer own = renderer_;
+        {
+            const GilReleased unlocked;
+            move(own);
+        }
+        static_cast<Renderer&>(renderer_) = std::move(own);
+    }
+
+  private:
+    SharedRenderer& renderer_;
+};
 
 py::dict follow_ticks(SharedRenderer& renderer, const Doubles& time, const Doubles& position,
                       const std::optional<Doubles>& pointing, bool alternatives,
                       const ProgressFunction& progress) {
+    std::optional<Moving> moving;
+    if (!alternatives) moving.emplace(renderer);
     const std::vector<DeviceState> states = states_from(time, position, pointing);
     std::vector<Tick> ticks(states.size());
     ReportedItems slices(progress_of(progress), ticks.size(), updates_in_slice);
@@ -94,7 +108,7 @@ py::dict follow_ticks(SharedRenderer& renderer, const Doubles& time, const Doubl
             slices.done();
         }
     } else {
-        moved_without_gil(renderer, [&](Renderer& own) {
+        moving->without_gil([&](Renderer& own) {
             for (std::size_t i = 0; i < states.size(); ++i) {
                 ticks[i] = render(own, states[i]);
                 slices.done();
@@ -117,10 +131,11 @@ py::array_t<double> batch_ns(SharedRenderer& renderer, const Doubles& time, cons
                              std::size_t batch, const ProgressFunction& progress) {
     using SteadyClock = std::chrono::steady_clock;
     if (batch == 0) throw std::invalid_argument("batch: at least one tick is needed");
+    Moving moving(renderer);
     const std::vector<DeviceState> states = states_from(time, position, std::nullopt);
     std::vector<double> times(states.size() / batch);
     ReportedItems slices(progress_of(progress), times.size(), batches_in_slice);
-    moved_without_gil(renderer, [&](Renderer& own) {
+    moving.without_gil([&](Renderer& own) {
         for (std::size_t i = 0; i < times.size(); ++i) {
             const auto begin = SteadyClock::now();
             for (std::size_t k = i * batch; k < (i + 1) * batch; ++k) render(own, states[k]);
@@ -148,36 +163,37 @@ void bind_flags(py::module_& module) {
 }
 
 void bind_tick(py::module_& module) {
-    py::class_<Tick> result(module, "Tick", "The result of one tick.");
-    const auto add = [&](auto... part) { add_part(result, part...); };
     using T = Tick;
     using P = ProxyUpdate;
     using L = LayersFelt;
-    add("time", "[s]", &T::time);
-    add("hip", "Place of the hand [mm, physical].", &T::proxy, &P::hip);
-    add("scp", "Surface contact point: the proxy [mm, physical].", &T::proxy, &P::scp);
-    add("mode", "'free' or 'constrained'.", &T::proxy, &P::mode);
-    add("status",
-        "'done', 'out_of_budget', 'recovering', 'refused', 'not_finite', or 'waiting' for\n"
-        "samples of a store.",
-        &T::proxy, &P::status);
-    add("density", "At the SCP [data units].", &T::proxy, &P::density);
-    add("isovalue", "Of the surface felt [data units].", &T::proxy, &P::isovalue);
-    add("tetrahedra", "How many the SCP moved through.", &T::proxy, &P::tetrahedra);
-    add("force", "[N], device axes.", &T::force);
-    add("torque", "[N mm], device axes, about the tool's reference point.", &T::torque);
-    add("force_flags", "Bits of FORCE_FLAGS.", &T::force_flags);
-    add("hand_orientation_xyzw", "Unit quaternion, tool axes to physical axes.", &T::tool,
-        &ToolFelt::hand);
-    add("proxy_orientation_xyzw", "The same of the proxy.", &T::tool, &ToolFelt::proxy);
-    add("contacts", "How many points of the tool hold the proxy.", &T::tool, &ToolFelt::contacts);
-    add("layer", "Number of the layer touched; -1: none.", &T::layers, &L::touched);
-    add("inside", "How many layers the SCP is inside.", &T::layers, &L::inside);
-    add("punctured", "Surfaces that gave way in this tick.", &T::layers, &L::punctured);
-    result.def("__repr__", [](const T& t) {
-        return py::str("Tick(time={:g}, mode={!r}, scp={}, force={})")
-            .format(t.time, enum_name(t.proxy.mode), py::cast(t.proxy.scp), py::cast(t.force));
-    });
+    using F = ToolFelt;
+    Result<T>(module, "Tick", "The result of one tick.")
+        .part("time", "[s]", &T::time)
+        .part("hip", "Place of the hand [mm, physical].", &T::proxy, &P::hip)
+        .part("scp", "Surface contact point: the proxy [mm, physical].", &T::proxy, &P::scp)
+        .part("mode", "'free' or 'constrained'.", &T::proxy, &P::mode)
+        .part("status",
+              "'done', 'out_of_budget', 'recovering', 'refused', 'not_finite', or 'waiting' for\n"
+              "samples of a store.",
+              &T::proxy, &P::status)
+        .part("density", "At the SCP [data units].", &T::proxy, &P::density)
+        .part("isovalue", "Of the surface felt [data units].", &T::proxy, &P::isovalue)
+        .part("tetrahedra", "How many the SCP moved through.", &T::proxy, &P::tetrahedra)
+        .part("force", "[N], device axes.", &T::force)
+        .part("torque", "[N mm], device axes, about the tool's reference point.", &T::torque)
+        .part("force_flags", "Bits of FORCE_FLAGS.", &T::force_flags)
+        .part("hand_orientation_xyzw", "Unit quaternion, tool axes to physical axes.", &T::tool,
+              &F::hand)
+        .part("proxy_orientation_xyzw", "The same of the proxy.", &T::tool, &F::proxy)
+        .part("contacts", "How many points of the tool hold the proxy.", &T::tool, &F::contacts)
+        .part("layer", "Number of the layer touched; -1: none.", &T::layers, &L::touched)
+        .part("inside", "How many layers the SCP is inside.", &T::layers, &L::inside)
+        .part("punctured", "Surfaces that gave way in this tick.", &T::layers, &L::punctured)
+        .done()
+        .def("__repr__", [](const T& t) {
+            return py::str("Tick(time={:g}, mode={!r}, scp={}, force={})")
+                .format(t.time, enum_name(t.proxy.mode), py::cast(t.proxy.scp), py::cast(t.force));
+        });
 }
 
 void bind_changes(py::class_<SharedRenderer>& renderer) {
@@ -218,10 +234,13 @@ void bind_changes(py::class_<SharedRenderer>& renderer) {
 
 }  // namespace
 
-Renderer offline_renderer(const Field& field, const io::Level& level, const RenderSetup& setup) {
+Renderer offline_renderer(const Field& field, const io::Level& level, const RenderSetup& asked) {
+    const RenderSetup setup = asked;  // other threads may change theirs
+    const GilReleased unlocked;
     const double isovalue = io::level_in(field.volume(), level);
-    RendererSettings settings =
-        run::offline_settings(setup_of(setup, offline_force()), field, isovalue, ctrl_c());
+    const run::RenderSetup made = setup_of(setup, offline_force());
+    run::refuse_without_effect(run::without_effect_in_replay(made), given_in(setup));
+    RendererSettings settings = run::offline_settings(made, field, isovalue, ctrl_c());
     if (const auto tool = tool_in(setup)) settings.tool = tool;
     return make_renderer(field, isovalue, settings);
 }

@@ -9,6 +9,7 @@
 #include "bindings/python/record.hpp"
 #include "bindings/python/without_gil.hpp"
 #include "palpate/io/error.hpp"
+#include "palpate/run/no_effect.hpp"
 
 namespace palpate::python {
 namespace {
@@ -157,28 +158,35 @@ std::shared_ptr<run::Data> data_from(const Feelable& what, const run::PlaybackSe
     return made_without_gil<run::Data>(loaded, playback);
 }
 
-/// Throws std::invalid_argument for what only the first run on a sequence decides.
+/// Throws std::invalid_argument for settings that change nothing: only the first run on a sequence
+/// decides on its playback.
 void check_playback(const Setup& given, const Feelable& what, const run::Data& data) {
-    const run::PlaybackSetup usual, &now = given.playback;
-    const bool is_usual = now.speed == usual.speed && now.loader.loop == usual.loader.loop &&
-                          now.loader.memory_bytes == usual.loader.memory_bytes;
     const bool is_shared = py::isinstance<LiveRun>(what);
-    if (is_usual || (data.is_sequence() && !is_shared)) return;
-    throw std::invalid_argument(
-        std::string("speed, loop and memory_bytes do nothing: ") +
-        (is_shared ? "the run that this one shares its data with has set them; use play()"
-                   : "this is no sequence"));
+    if (data.is_sequence() && !is_shared) return;
+    const run::PlaybackSetup usual, &now = given.playback;
+    run::refuse_without_effect(
+        {{{"speed", "loop", "memory_bytes"},
+          is_shared ? "the run that this one shares its data with has set this; use play()"
+                    : "this is no sequence"}},
+        {{"speed", now.speed != usual.speed},
+         {"loop", now.loader.loop != usual.loader.loop},
+         {"memory_bytes", now.loader.memory_bytes != usual.loader.memory_bytes}});
 }
 
 std::shared_ptr<LiveRun> make(const Feelable& what, const std::optional<Setup>& given,
                               const py::object& device, double device_rate) {
     run::Setup setup = live_setup(given.value_or(Setup{}));
+    run::refuse_without_effect(run::without_effect(setup.render),
+                               {{"isovalue", setup.field.isovalue.has_value()}});
+    run::refuse_without_effect(
+        {{{"Setup.device"}, "the device in Python is used"}},
+        {{"Setup.device", !device.is_none() && setup.device != run::Setup{}.device}});
+    run::refuse_without_effect(
+        {{{"device_rate"}, "there is no device in Python"}},
+        {{"device_rate", device.is_none() && device_rate != usual_device_rate}});
     std::shared_ptr<run::Data> data = data_from(what, setup.playback);
     if (given) check_playback(*given, what, *data);
     PythonDevice* python_device = nullptr;
-    if (device.is_none() && device_rate != usual_device_rate) {
-        throw std::invalid_argument("device_rate does nothing without a device in Python");
-    }
     if (!device.is_none()) {
         // Made here, with the GIL: copies of the setup must not hold a Python object.
         const auto made = std::make_shared<std::unique_ptr<PythonDevice>>(

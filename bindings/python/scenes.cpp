@@ -13,9 +13,7 @@ py::array_t<double> exact_at(const scenes::Scene& scene, const Doubles& points) 
     if (!scene.exact) {
         throw std::invalid_argument(scene.name + " has no analytic density");
     }
-    std::vector<double> values;
-    for (const Vec3& point : points_from(points, "points")) values.push_back(scene.exact(point));
-    return array_from(std::move(values));
+    return column(points_from(points, "points"), scene.exact);
 }
 
 std::pair<py::array_t<double>, py::array_t<double>> motion(const std::string& name,
@@ -41,6 +39,17 @@ void bind_scenes(py::module_& module) {
         .def("exact", &exact_at, py::arg("points"),
              "The analytic density [data units], shape (n,), at points [mm], shape (n, 3).\n"
              "ValueError where there is none.")
+        .def(py::pickle(
+            [](const Scene& s) {
+                return py::make_tuple(s.name, s.volume.type(), s.volume.geometry());
+            },
+            [](const py::tuple& state) {
+                const auto name = state[0].cast<std::string>();
+                const auto type = state[1].cast<SampleType>();
+                const auto grid = state[2].cast<Geometry>();
+                const GilReleased unlocked;
+                return scenes::make_volume(name, grid, type, ctrl_c());
+            }))
         .def("__repr__", [](const Scene& s) {
             return py::str("Scene({!r}, {!r}, isovalue={:g})")
                 .format(s.name, py::cast(s.volume), s.isovalue);

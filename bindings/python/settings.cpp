@@ -42,35 +42,51 @@ std::shared_ptr<const Tool> tool_in(const RenderSetup& setup) {
     return tool ? *tool : nullptr;
 }
 
+namespace {
+
+io::ToolSpec spec_of(const ToolChoice& choice) {
+    if (const auto* text = std::get_if<std::string>(&choice)) {
+        return io::tool_spec_from(*text, ctrl_c());
+    }
+    const Tool& tool = *std::get<std::shared_ptr<Tool>>(choice);
+    const auto points = tool.points();
+    return io::PointsSpec{{points.begin(), points.end()}, tool.turns(), tool.shape()};
+}
+
+run::PenetrabilitySetup penetrability_of(const PressThrough& press) {
+    if (press.ranges.empty()) return run::ThresholdSetup{press.threshold, press.minimum};
+    run::RangesSetup ranges{press.threshold, {}};
+    for (const auto& [low, high] : press.ranges) ranges.ranges.push_back({low, high});
+    return ranges;
+}
+
+}  // namespace
+
+run::Given given_in(const RenderSetup& setup) {
+    const auto& layers = setup.layers;
+    run::Given given{{"tool_spacing", setup.tool_spacing.has_value()},
+                     {"minimum", setup.press && setup.press->minimum},
+                     {"closing", layers && layers->layers.closing != Layers{}.closing}};
+    for_each_setting<ForceSettings>([&](const auto& one) {
+        const auto& value = setup.asked_force.*one.member;
+        const bool differs = value != ForceSettings{}.*one.member;
+        if constexpr (std::same_as<decltype(one.member), double ForceSettings::*>) {
+            given[one.name] = differs && asked(value);
+        } else {
+            given[one.name] = differs;
+        }
+    });
+    return given;
+}
+
 run::RenderSetup setup_of(const RenderSetup& setup, const ForceSettings& usual) {
     run::RenderSetup made = setup;
     made.force = force_of(setup.asked_force, usual);
     made.limit = asked(setup.asked_force.limit);
     made.stiffness = asked(setup.asked_force.stiffness);
-    if (const std::shared_ptr<const Tool> tool = tool_in(setup)) {
-        const auto points = tool->points();
-        made.tool = io::PointsSpec{{points.begin(), points.end()}, tool->turns(), tool->shape()};
-    } else {
-        made.tool = io::tool_spec_from(std::get<std::string>(setup.asked_tool), ctrl_c());
-    }
-    if (made.tool_spacing && (std::holds_alternative<io::PointSpec>(made.tool) ||
-                              std::holds_alternative<io::PointsSpec>(made.tool))) {
-        throw std::invalid_argument(
-            "tool_spacing does nothing: it is for a tool whose points are made, such as sphere:2");
-    }
-    if (!setup.press) return made;
-    const PressThrough& press = *setup.press;
-    if (press.minimum && !press.ranges.empty()) {
-        throw std::invalid_argument(
-            "Penetrability.minimum does nothing with ranges, which have levels of their own");
-    }
-    if (press.ranges.empty()) {
-        made.penetrability = run::ThresholdSetup{press.threshold, press.minimum};
-        return made;
-    }
-    run::RangesSetup ranges{press.threshold, {}};
-    for (const auto& [low, high] : press.ranges) ranges.ranges.push_back({low, high});
-    made.penetrability = ranges;
+    made.tool = spec_of(setup.asked_tool);
+    if (setup.press) made.penetrability = penetrability_of(*setup.press);
+    run::refuse_without_effect(run::without_effect(made), given_in(setup));
     return made;
 }
 
@@ -178,10 +194,8 @@ void bind_render_setup(py::module_& module) {
                 if (made && !*made) {  // pybind11 takes None for any pointer
                     throw py::type_error("RenderSetup.tool must be text or Tool, not None");
                 }
-                S changed = s;
-                changed.asked_tool = tool;
-                setup_of(changed);  // says now what is wrong
-                s = changed;
+                spec_of(tool);  // says now what is wrong
+                s.asked_tool = tool;
             },
             "A Tool, or text: 'point', 'sphere:RADIUS', 'needle', a mesh file, ... [mm]")
         .field("tool_spacing", &S::tool_spacing,

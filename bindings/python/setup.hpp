@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "palpate/run/setup.hpp"
+#include "palpate/run/no_effect.hpp"
 
 namespace palpate::python {
 
@@ -43,7 +43,10 @@ struct RenderSetup : run::RenderSetup {  ///< but for its force, tool and penetr
 ForceSettings offline_force();
 /// `asked`, with what it leaves open as in `usual`.
 ForceSettings force_of(const AskedForce& asked, const ForceSettings& usual);
-/// Throws std::invalid_argument and io::InputError for a tool's text or file.
+/// Which settings of the force, of the tool, of pressing and of layers are not the usual ones.
+run::Given given_in(const RenderSetup& setup);
+/// Throws std::invalid_argument and io::InputError for a tool's text or file, and
+/// std::invalid_argument for settings that change nothing.
 run::RenderSetup setup_of(const RenderSetup& setup, const ForceSettings& usual = {});
 /// The tool as it was given, where it was given as points.
 std::shared_ptr<const Tool> tool_in(const RenderSetup& setup);

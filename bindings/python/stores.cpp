@@ -4,6 +4,7 @@
 #include "bindings/python/own_process.hpp"
 #include "bindings/python/progress.hpp"
 #include "palpate/io/error.hpp"
+#include "palpate/run/no_effect.hpp"
 #include "palpate/run/source.hpp"
 #include "palpate/stream/store.hpp"
 #include "stream/formats/content.hpp"
@@ -106,8 +107,22 @@ void bind_open_store(py::module_& module) {
             options.cache_folder = cache;
             if (!cache.empty()) options.cache_bytes = std::uint64_t{4} << 30;
             const std::string address = place.string();
-            return OpenStore{destroyed_here_only(stream::open_store(address, options, ctrl_c())),
-                             address, options};
+            run::StoreSource from;
+            from.address = address;
+            from.options = options;
+            run::Source source;
+            source.from = from;
+            run::refuse_without_effect(
+                run::without_effect(source),
+                {{"cache", !cache.empty()}, {"forbidden_is_missing", forbidden_is_missing}});
+            const OpenStore opened{
+                destroyed_here_only(stream::open_store(address, options, ctrl_c())), address,
+                options};
+            if (opened.info().format != "raw") {
+                run::refuse_without_effect({{{"raw"}, address + " describes its own samples"}},
+                                           {{"raw", raw.has_value()}});
+            }
+            return opened;
         },
         py::arg("address"), py::kw_only(), py::arg("raw") = py::none(),
         py::arg("spacing") = py::none(), py::arg("orientation") = "", py::arg("channel") = 0,

@@ -6,6 +6,7 @@
 #include "bindings/python/progress.hpp"
 #include "bindings/python/record.hpp"
 #include "palpate/io/mesh_file.hpp"
+#include "palpate/run/no_effect.hpp"
 
 namespace palpate::python {
 namespace {
@@ -15,6 +16,12 @@ using Indices = Numbers<std::uint32_t>;
 
 SurfaceMesh extract(const Field& field, const io::Level& level, double tolerance, bool normals,
                     const ProgressFunction& progress) {
+    if (field.interpolation() == Interpolation::linear) {
+        run::refuse_without_effect(
+            {{{"tolerance"}, "the facets of the linear field are exact"},
+             {{"normals"}, "those of the linear field are the normals of the facets"}},
+            {{"tolerance", tolerance != 0}, {"normals", normals}});
+    }
     SurfaceOptions options;
     options.tolerance = tolerance;
     options.normals = normals;
@@ -34,21 +41,23 @@ SurfaceMesh mesh_from(const Doubles& vertices, const Indices& triangles) {
     }
     SurfaceMesh mesh;
     mesh.vertices = points_from(vertices, "vertices");
+    const std::uint32_t* corner = triangles.data();
+    mesh.triangles.resize(static_cast<std::size_t>(triangles.shape(0)));
+    const GilReleasedForRows unlocked(mesh.vertices.size() + mesh.triangles.size());
     Stoppable work;
     for (const Vec3& vertex : mesh.vertices) {
         check_numbers("vertices", vertex, ranges::finite);
         work.done(sizeof vertex);
     }
-    mesh.triangles.reserve(static_cast<std::size_t>(triangles.shape(0)));
-    for (py::ssize_t i = 0; i < triangles.shape(0); ++i) {
-        work.done(sizeof mesh.triangles[0]);
-        for (const int corner : {0, 1, 2}) {
-            if (triangles.at(i, corner) >= mesh.vertices.size()) {
-                throw std::invalid_argument("triangle " + std::to_string(i) +
-                                            " names a vertex that there is not");
-            }
+    for (auto& triangle : mesh.triangles) {
+        work.done(sizeof triangle);
+        for (std::uint32_t& vertex : triangle) {
+            vertex = *corner++;
+            if (vertex < mesh.vertices.size()) continue;
+            throw std::invalid_argument("triangle " +
+                                        std::to_string(&triangle - mesh.triangles.data()) +
+                                        " names a vertex that there is not");
         }
-        mesh.triangles.push_back({triangles.at(i, 0), triangles.at(i, 1), triangles.at(i, 2)});
     }
     return mesh;
 }
@@ -91,8 +100,8 @@ void bind_surfaces(py::module_& module) {
         .def_property_readonly("enclosed_volume", &enclosed_volume, "Of a closed mesh [mm^3].")
         .def(
             "write",
-            [](const SurfaceMesh& mesh, const std::filesystem::path& path) {
-                io::write_mesh(mesh, path, ctrl_c());
+            [](const SurfaceMesh& self, const std::filesystem::path& path) {
+                io::write_mesh(self, path, ctrl_c());
             },
             py::arg("path"), py::call_guard<GilReleased>(),
             "As .ply, .stl, .obj or .vtp, whole or not at all. Raises OutputError.")

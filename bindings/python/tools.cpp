@@ -34,7 +34,9 @@ void bind_tools(py::module_& module) {
     py::class_<Tool, std::shared_ptr<Tool>>(
         module, "Tool", "A rigid body that touches with points of its surface (docs/tools.md).")
         .def(py::init([](const Doubles& points, std::optional<double> gyration, bool turns) {
-                 return made(Tool(points_from(points, "points"), gyration, turns));
+                 std::vector<Vec3> places = points_from(points, "points");
+                 const GilReleased unlocked;
+                 return made(Tool(std::move(places), gyration, turns));
              }),
              py::arg("points"), py::arg("gyration") = py::none(), py::arg("turns") = true,
              "points [mm], tool axes, shape (n, 3), the reference point at the origin. gyration\n"

@@ -383,8 +383,8 @@ typedef struct palpate_own_device {
     double physical_damping;       /* [N s/mm] of device and hand; 0: 0.0025 */
     double workspace_low[3];       /* [device mm]; all 0: -80 */
     double workspace_high[3];      /* all 0: 80 */
-    double rate;                   /* [Hz] of the callbacks, 50 to 8000; 0: 1000. Below 1000 it limits
-                                      the stiffness, as the rate of the servo does */
+    double rate;                   /* [Hz] of the callbacks, 50 to 8000; 0: 1000. It limits the
+                                      stiffness: a reading and a force wait up to one period each */
     int32_t has_orientation;
     int32_t has_gripper; /* readings have an opening. Since 0.3 */
     /* Fills in *reading (its size is set, the rest is 0). Returns 0, or another number if the device
@@ -571,7 +571,8 @@ PALPATE_API palpate_status palpate_run_change_layers(palpate_run *run, const cha
  * hand. The force starts again. Since 0.3. */
 PALPATE_API palpate_status palpate_run_lift(palpate_run *run);
 
-/* Continues with another device and with all settings requested so far. */
+/* Continues with another device and with all settings requested so far. NO_DEVICE if that cannot be
+ * opened; and if the device before does not answer, whose force may then still be on. */
 PALPATE_API palpate_status palpate_run_use_device(palpate_run *run, const char *device);
 /* Records into a new file. An existing file is refused. The session and its force continue. */
 PALPATE_API palpate_status palpate_run_record(palpate_run *run, const char *path);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <concepts>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "palpate/settings.hpp"
@@ -64,6 +65,31 @@ TEST(SettingsTable, each_number_of_the_force_can_be_changed_while_it_is_felt) {
     });
     support::put_bytes(folder / "no.txt", "0.1 wobble 3\n");
     expect_failure(palpate(folder, line + "no.txt"), 3, "force-limit");
+}
+
+TEST(SettingsTable, numbers_without_an_option_are_set_by_their_names_while_they_are_felt) {
+    const ScratchFolder folder;
+    const std::string line =
+        "touch synthetic:sphere:16x16x16 --unpaced --seconds 0.3 --json --commands set.txt";
+    const auto told = [&](const std::string& commands) {
+        support::put_bytes(folder / "set.txt", commands);
+        return palpate(folder, line);
+    };
+    const Outcome done = told(
+        "0.1 set limits.maximum_force 1.25\n0.1 set force.stale_after 0.015\n"
+        "0.2 set force.magnet.distance 3\n0.2 set friction.static_coefficient 0.75\n");
+    ASSERT_EQ(done.status, 0) << done.err;
+    const auto settings = nlohmann::json::parse(done.out).at("settings");
+    EXPECT_EQ(settings.at("device").at("maximum_force"), 1.25);
+    EXPECT_EQ(settings.at("force").at("stale_after"), 0.015);
+    EXPECT_EQ(settings.at("force").at("magnet").at("distance"), 3);
+    EXPECT_EQ(settings.at("friction").at("static"), 0.75);
+    const Outcome raised = told("0.1 set limits.maximum_force 100\n");
+    EXPECT_TRUE(contains(raised.err, "limits can only be lowered")) << raised.err;
+    EXPECT_EQ(nlohmann::json::parse(raised.out).at("settings").at("device").at("maximum_force"),
+              3.3);
+    expect_failure(told("0.1 set force.stifness 1\n"), 3, "did you mean force.stiffness?");
+    expect_failure(told("0.1 set force.ramp\n"), 3, "set NAME VALUE");
 }
 
 }  // namespace

@@ -104,6 +104,21 @@ TEST(ToolFile, what_is_no_tool_is_refused_in_words) {
     EXPECT_THROW((void)make_tool(SphereSpec{1}, 0), std::invalid_argument);
 }
 
+TEST(ToolFile, a_tool_of_a_similar_name_is_suggested) {
+    const auto told = [](const std::string& text) -> std::string {
+        try {
+            (void)tool_spec_from(text);
+        } catch (const std::invalid_argument& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_TRUE(told("spher:2").ends_with(" (did you mean sphere:2?)")) << told("spher:2");
+    EXPECT_TRUE(told("Needle").ends_with(" (did you mean needle?)")) << told("Needle");
+    EXPECT_TRUE(told("point:1").ends_with(" (did you mean point?)")) << told("point:1");
+    EXPECT_TRUE(told("lever:1").ends_with(" .vtp)")) << told("lever:1");
+}
+
 TEST(ToolFile, a_mesh_of_many_triangles_can_be_stopped_on_its_way_to_a_tool) {
     constexpr std::uint32_t edge = 100;
     ToolShape sheet;

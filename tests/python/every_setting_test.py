@@ -1,5 +1,6 @@
-"""Each number of the table of settings (settings.hpp) is wherever settings are shown, kept or changed.
-So a number that is added to the table has to be there, too. The panel has a test of its own (tests/viewer)."""
+"""Each number of the table of settings (settings.hpp) is wherever settings are shown, kept or changed. So a number that is added
+to the table has to be there, too. The panel and session files have tests of their own, which walk the same table:
+Forces.each_number_in_the_tables_has_a_row_with_words_of_its_own, SettingsTable.recordings_and_session_files_have_every_setting."""
 
 import ast
 import ctypes
@@ -41,6 +42,16 @@ NAMES = [name for name, _, _ in TABLE]
 
 
 @pytest.fixture(scope="module")
+def reported(tmp_path_factory):
+    """The settings that `palpate touch --json` and `palpate replay --json` report."""
+    folder, ball = tmp_path_factory.mktemp("reported"), "synthetic:sphere:16x16x16"
+    (folder / "hand.csv").write_text("t,x,y,z\n0,0,0,9\n1,0,0,8\n", encoding="utf-8")
+    calls = (["touch", ball, "--unpaced", "--seconds", "0.1"], ["replay", ball, "--trajectory", "hand.csv", "-o", "trace.csv"])
+    return [json.loads(subprocess.run([os.environ["PALPATE"], *call, "--json"], check=True, text=True, cwd=folder,
+                                      stdout=subprocess.PIPE).stdout)["settings"] for call in calls]
+
+
+@pytest.fixture(scope="module")
 def recorded(tmp_path_factory):
     """The settings at the head of a recording. Session files have the same."""
     path = tmp_path_factory.mktemp("recorded") / "run.csv"
@@ -72,15 +83,16 @@ def test_the_numbers_of_python_are_those_of_the_table():
 
 
 @pytest.mark.parametrize("name, unit, about", TABLE, ids=NAMES)
-def test_each_setting_is_in(name, unit, about, recorded):
+def test_each_setting_is_in(name, unit, about, recorded, reported):
     group, _, member = name.rpartition(".")
     kind = CLASSES[group]
     assert about in vars(kind)[member].__doc__ and (not unit or f"[{unit}]" in vars(kind)[member].__doc__)
     assert member in TYPES[kind.__name__]
     assert f"`{name}`" in HEADER
-    for part in name.split("."):
-        recorded = recorded[IN_FILES.get(part, part)]
-    assert isinstance(float(recorded), float)
+    for value in (recorded, *reported):
+        for part in name.split("."):
+            value = value[IN_FILES.get(part, part)]
+        assert isinstance(float(value), float)
     if group in PAIRS:
         assert PAIRS[group] + member.split("_")[0].upper() in HELP or f",{member.split('_')[0].upper()}" in HELP
     elif group == "force":  # those of limits are the device's

@@ -230,7 +230,8 @@ def test_a_notebook_shows_facts_and_pictures():
     volume = palpate.scene("torus:24x20x16", "uint8").volume
     field = palpate.Field(volume)
     mesh = palpate.extract(field, "50%")
-    for shown, facts in ((volume, ("24 x 20 x 16 uint8", "data:image/png;base64,")),
+    loaded = palpate.load("synthetic:beating:12x10x8")
+    for shown, facts in ((loaded, ("synthetic:beating:12x10x8", "12 x 10 x 8", "frames", "data:image/png;base64,")), (volume, ("24 x 20 x 16 uint8", "data:image/png;base64,")),
                          (field, ("cubic", "data:image/png;base64,")),
                          (mesh, (f">{len(mesh.vertices)}<", "mm³")),
                          (trace, (">300<", "<polyline", f"{trace.summary['largest_force']:.3g} N"))):

@@ -292,7 +292,7 @@ def test_fields_meshes_samples_and_loaded_volumes_can_be_pickled_and_copied(tmp_
     editor.apply(palpate.Fill((2, 2, 2), (5, 5, 5), 250))
     pushed = palpate.Samples([(0.0, scene.volume), (0.5, scene.volume)], period=1)
     for one in (field, palpate.Field(pushed), pushed,
-                palpate.extract(field, 90, normals=True), palpate.load(path),
+                palpate.extract(palpate.Field(scene.volume), 90, normals=True), palpate.load(path),
                 palpate.load("synthetic:torus:16x16x16"), palpate.load("synthetic:beating:8x8x8"),
                 palpate.LoadedVolume(scene.volume, "mine", 40)):
         again = pickle.loads(pickle.dumps(one))

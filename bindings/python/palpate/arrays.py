@@ -55,7 +55,10 @@ def _placed(volume, given):
 
 
 def _frame_of(data, frame, axis):
-    data = data if hasattr(data, "shape") else numpy.asanyarray(data)
+    if hasattr(data, "__dlpack__") and not hasattr(data, "__array__"):
+        data = numpy.from_dlpack(data)
+    if not hasattr(data, "shape") or isinstance(data, memoryview):
+        data = numpy.asanyarray(data)
     shape = data.shape if axis == 0 else data.shape[::-1]  # the three of space come last
     beyond = len(shape) - 4
     if beyond > 0 and all(length == 1 for length in shape[:beyond]):

@@ -54,6 +54,16 @@ def of_volume(volume):
     return _table("Volume", _facts_of_volume(volume), _slice_of(volume))
 
 
+def of_loaded(loaded):
+    volume = loaded.volume
+    facts = {"name": loaded.name, "format": loaded.format, **_facts_of_volume(volume)}
+    if loaded.time_steps > 1:
+        facts["frames"] = loaded.time_steps
+    for number, note in enumerate(loaded.notes, 1):
+        facts[f"note {number}"] = note
+    return _table("LoadedVolume", facts, _slice_of(volume))
+
+
 def of_field(field):
     facts = {"solid": f"{field.solid} the isovalue", "interpolation": field.interpolation,
              "background": f"{field.background:g}"}
@@ -85,5 +95,6 @@ def of_trace(trace):
 
 
 def complete(module):
-    for kind, text in ((module.Volume, of_volume), (module.Field, of_field), (module.Mesh, of_mesh)):
+    for kind, text in ((module.Volume, of_volume), (module.LoadedVolume, of_loaded), (module.Field, of_field),
+                       (module.Mesh, of_mesh)):
         kind._repr_html_ = text

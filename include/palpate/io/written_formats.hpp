@@ -21,6 +21,10 @@ std::string_view written_extension_of(const std::filesystem::path& path);
 /// for formats of one file.
 std::filesystem::path data_file_of(const std::filesystem::path& path, bool compress);
 
+/// Why files of this name are never compressed, in a sentence that begins with the extension. Empty
+/// if they can be.
+std::string why_not_compressed(const std::filesystem::path& path);
+
 /// The reason why a volume on this grid cannot be written as `path`, in one line that begins with
 /// the path. The extension may be unknown, the format may be unable to store the origin or
 /// directions, or a data file of another volume would be replaced. Empty if it can be written.

@@ -68,6 +68,8 @@ class Run {
     /// After stop(): that the device has not got the zero, so that its force may still be on.
     /// Empty once it has.
     std::string unanswered() const;
+    /// After use_device(): the same for the device before.
+    const std::string& left_behind() const { return left_behind_; }
 
     /// The field at the start of the run; field_now() has the edits, or the moment of a sequence.
     const Field& field() const { return field_; }
@@ -181,6 +183,7 @@ class Run {
     std::int64_t lost_before_ = 0;  // events of the recordings of this servo before
     std::unique_ptr<Servo> servo_;  // none before start()
     bool running_ = false;
+    std::string left_behind_;
     double period_ = 0;           // [s] of a tick of this servo
     std::int64_t steps_ = 0;      // of this servo
     double time_ = 0, told_ = 0;  // [s] of all steps; when the data was told last

@@ -52,6 +52,22 @@ TEST_F(COwnDevice, a_stop_says_that_a_callback_hangs_until_it_returns_and_gets_t
     }
 }
 
+TEST_F(COwnDevice, another_device_is_used_and_the_one_that_hangs_is_told) {
+    Hand hand;
+    const palpate_own_device own = device_of(hand);
+    hang(own, hand, hand.in_write);
+    EXPECT_EQ(palpate_run_use_device(run_, "simulated:hand=hold"), PALPATE_NO_DEVICE);
+    const std::string error = palpate_last_error();
+    EXPECT_NE(error.find("its force may still be on"), std::string::npos) << error;
+    EXPECT_TRUE(shows(
+        [](const palpate_snapshot& now) { return now.device_status == PALPATE_DEVICE_READY; }));
+    EXPECT_EQ(problem(), "");
+    EXPECT_EQ(palpate_run_use_device(run_, "simulated:hand=hold"), PALPATE_OK);
+    hand.in_write.closed = false;
+    EXPECT_TRUE(comes_true([&] { return hand.closes == 1; }));
+    EXPECT_EQ(hand.force, 0);
+}
+
 TEST_F(COwnDevice, destroying_a_run_leaves_a_callback_that_hangs_alone_until_it_returns) {
     for (Gate Hand::*const where : both_callbacks) {
         Hand hand;
@@ -97,13 +113,16 @@ TEST_F(COwnDevice, springs_have_to_be_stable_at_the_rate_of_the_callbacks) {
         stiffness_ = stiffness;
         EXPECT_EQ(create(&own), PALPATE_INVALID);
         const std::string error = palpate_last_error();
-        EXPECT_NE(error.find("at 50 Hz to be rendered stably"), std::string::npos) << error;
+        EXPECT_NE(error.find("at 50 Hz and a delay of 40.1 ms to be rendered stably"),
+                  std::string::npos)
+            << error;
     }
     stiffness_ = 0;
     ASSERT_EQ(create(&own), PALPATE_OK) << palpate_last_error();
     double usual = 0;
     EXPECT_EQ(palpate_run_get(run_, "force.stiffness", &usual), PALPATE_OK);
-    EXPECT_EQ(usual, 0.25);  // not the 0.5 of its hint
+    // Not the 0.5 of its hint. A reading and a force each wait one period for the other thread.
+    EXPECT_NEAR(usual, 2.5e-3 / (0.5 / 50 + 2.0 / 50 + 1e-4), 1e-12);
 }
 
 }  // namespace

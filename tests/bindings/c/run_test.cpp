@@ -145,7 +145,11 @@ TEST_F(CRun, what_is_set_by_any_name_is_what_the_run_has_and_renders) {
             }
             if (before == 0) continue;
         }
-        const double wanted = !std::isfinite(before) ? 7 : before == 0 ? 1e-4 : 0.9 * before;
+        const double other = before == 0 ? 1e-4 : 0.9 * before;
+        const double wanted = !std::isfinite(before)            ? 7
+                              : name == "limits.delay"          ? before + 1e-4
+                              : name == "force.magnet.distance" ? 1
+                                                                : other;
         ASSERT_EQ(palpate_run_set(run_, one.name, wanted), PALPATE_OK) << palpate_last_error();
         ASSERT_EQ(palpate_run_get(run_, one.name, &after), PALPATE_OK);
         EXPECT_EQ(after, wanted) << one.name;
@@ -292,6 +296,13 @@ TEST_F(CRun, edits_are_felt_undone_and_seen_in_a_field) {
     EXPECT_EQ(done, 0);
     brush.radius = -1;
     EXPECT_EQ(palpate_data_stroke(data_, &brush, origin.data(), origin.data()), PALPATE_INVALID);
+    brush.radius = 5;
+    for (const double rate : {double{NAN}, -1.0}) {
+        brush.rate = rate;
+        EXPECT_EQ(palpate_data_stroke(data_, &brush, origin.data(), origin.data()),
+                  PALPATE_INVALID);
+        EXPECT_NE(std::string(palpate_last_error()).find("rate of the brush"), std::string::npos);
+    }
     EXPECT_EQ(palpate_data_play(data_, 1), PALPATE_INVALID);
 }
 

@@ -336,9 +336,9 @@ TEST(CData, the_brush_of_a_hand_can_have_the_shape_of_its_tool) {
     palpate_run* run = nullptr;
     ASSERT_EQ(palpate_run_create(data, &options, &run), PALPATE_OK) << palpate_last_error();
     ASSERT_EQ(palpate_run_start(run), PALPATE_OK);
-    PALPATE_STRUCT(palpate_edit_state, edits);
+    PALPATE_STRUCT(palpate_snapshot, now);  // of a tick that has the edit, so it is recorded
     EXPECT_TRUE(support::comes_true(
-        [&] { return palpate_data_edits(data, &edits) == PALPATE_OK && edits.version > 0; }));
+        [&] { return palpate_run_snapshot(run, &now) == PALPATE_OK && now.version > 0; }));
     palpate_run_destroy(run);
     palpate_data_destroy(data);
     palpate_volume_destroy(volume);

@@ -59,7 +59,7 @@ class Press:
         hips = line.way.at(self.depth)
         penetrability = {"off": None, "threshold": palpate.Penetrability(threshold=THRESHOLD, minimum=subject.isovalue),
                          "ranges": palpate.Penetrability(threshold=THRESHOLD, ranges=line.ranges)}[function]
-        self.trace = palpate.Proxy(subject.field, subject.isovalue, hips[0]).follow(hips, penetrability=penetrability, scale=scale)
+        self.trace = palpate.Proxy(subject.field, subject.isovalue, hips[0]).follow(hips, penetrability=penetrability, scale=scale if penetrability else 1.0)
         self.pull = numpy.linalg.norm(self.trace.scp - hips, axis=1) / scale
         self.force = numpy.where(self.trace.constrained, STIFFNESS * self.pull, 0)
         self.density_at_hand = subject.field.value(hips)
