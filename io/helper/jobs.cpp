@@ -197,19 +197,25 @@ class Workshop {
         }
         made.push_back(inside_);
         const fs::path parent = target_.has_parent_path() ? target_.parent_path() : ".";
+        const auto not_placed = [](int error) {
+            return Failure("cannot be put in its place (" + reason(error) + ")");
+        };
         for (const fs::path& file : made) {
-            const fs::path to = parent / file.filename();
             std::error_code ignored;  // a new file has the usual mode
-            const auto old = fs::status(to, ignored);
+            const auto old = fs::status(parent / file.filename(), ignored);
             if (fs::exists(old) && !give_mode(file, old.permissions())) {
                 throw Failure("cannot be given the mode of the file it replaces (" + reason(errno) +
                               ")");
             }
             const int whole = open_to_read(file);
-            const bool moved = synchronise(whole) && replace(file, to);
+            const bool is_stored = synchronise(whole);
             const int error = errno;
             if (whole >= 0) ::close(whole);
-            if (!moved) throw Failure("cannot be put in its place (" + reason(error) + ")");
+            if (!is_stored) throw not_placed(error);
+        }
+        report({{"placing", true}});
+        for (const fs::path& file : made) {
+            if (!replace(file, parent / file.filename())) throw not_placed(errno);
         }
         synchronise_folder(parent);
         fs::remove(marker());
