@@ -20,8 +20,7 @@ bool is_same(const Geometry& a, const Geometry& b) {
 /// The same samples.
 Volume on_grid(const Volume& volume, const Geometry& grid) {
     const auto whole = std::make_shared<const Volume>(volume);
-    return {grid, volume.type(), std::shared_ptr<const void>(whole, whole->data()),
-            volume.bytes()};
+    return {grid, volume.type(), std::shared_ptr<const void>(whole, whole->data()), volume.bytes()};
 }
 
 }  // namespace
