@@ -168,6 +168,12 @@ void Data::require_saving() const {
     }
 }
 
+io::VolumeIdentity Data::identity(const OnProgress& progress) const {
+    const std::lock_guard lock(identifying_);
+    if (!identity_) identity_ = io::identify(start_->volume(), to_names(loaded_.source), progress);
+    return *identity_;
+}
+
 std::string Data::save(const std::filesystem::path& path, const io::Progress& progress) {
     require_saving();
     require_unused(path);

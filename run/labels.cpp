@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "palpate/io/error.hpp"
+#include "palpate/run/beside.hpp"
 
 namespace palpate::run {
 namespace {
@@ -128,7 +129,8 @@ io::LayersFile layers_by_label(const LoadedVolume& labels,
 }
 
 std::shared_ptr<const Layers> with_labels(std::shared_ptr<const Layers> layers,
-                                          const std::filesystem::path& recording) {
+                                          const std::filesystem::path& recording,
+                                          const LoadedVolume& volume) {
     if (!layers || !layers->by_label || layers->labels) return layers;
     std::filesystem::path path = layers->label_volume;
     std::error_code error;
@@ -137,7 +139,7 @@ std::shared_ptr<const Layers> with_labels(std::shared_ptr<const Layers> layers,
     }
     Layers complete = *layers;
     try {
-        const LoadedVolume labels = load(source_named(path.string()));
+        const LoadedVolume labels = load_beside(source_named(path.string()), volume);
         require_whole_numbers(labels);
         attach(complete, labels);
     } catch (const std::invalid_argument& e) {

@@ -120,7 +120,7 @@ Session recorded_session(const io::RecordingHead& head, const LoadedVolume& load
     try {
         RendererSettings settings = head.settings;
         settings.method = baselines::method_named(head.method);
-        settings.layers = with_labels(settings.layers, recording);
+        settings.layers = with_labels(settings.layers, recording, loaded);
         check(head.session);
         // A servo may be sent what a tool does not feel (docs/tools.md). It is kept for the point.
         const auto tool = std::exchange(settings.tool, nullptr);
@@ -171,6 +171,7 @@ std::optional<Difference> difference(const SessionTick& recorded, const SessionT
 Replay::Replay(io::RecordingReader& reader, const LoadedVolume& loaded, std::string recording,
                std::function<void()> tell)
     : reader_(reader),
+      loaded_(loaded),
       recording_(std::move(recording)),
       session_(recorded_session(reader.head(), loaded, recording_,
                                 [&tell](double) {
@@ -184,7 +185,7 @@ void Replay::carry_out(const Command& recorded) {
     try {
         Command command = samples_.whole(recorded);
         if (auto* layers = std::get_if<command::UseLayers>(&command)) {
-            layers->layers = like_before(with_labels(layers->layers, recording_),
+            layers->layers = like_before(with_labels(layers->layers, recording_, loaded_),
                                          session_.renderer.settings.layers);
         }
         if (const auto* limits = std::get_if<DeviceLimits>(&command)) {

@@ -13,6 +13,7 @@
 
 #include "devices/claim.hpp"
 #include "io/system/number.hpp"
+#include "palpate/run/beside.hpp"
 
 namespace palpate::run {
 namespace {
@@ -88,6 +89,26 @@ bool moves_contact(const Command& command) {
     return std::visit(moves, command);
 }
 
+/// Layers by label that come without orientation or spacing lie where they were given for the data.
+Command placed_beside(Command command, const LoadedVolume& loaded) {
+    const auto* use = std::get_if<command::UseLayers>(&command);
+    if (!use || !use->layers) return command;
+    auto labels = labels_beside(use->layers->labels, loaded);
+    if (labels == use->layers->labels) return command;
+    Layers layers = *use->layers;
+    layers.labels = std::move(labels);
+    std::get<command::UseLayers>(command).layers = std::make_shared<const Layers>(layers);
+    return command;
+}
+
+/// The same of the layers with which a run begins.
+Setup placed_beside(Setup setup, const LoadedVolume& loaded) {
+    if (auto& file = setup.render.layers) {
+        file->layers.labels = labels_beside(file->layers.labels, loaded);
+    }
+    return setup;
+}
+
 /// Interval between steps of data and recording, with Pace::by_steps [s].
 constexpr double between_steps = 0.004;
 /// How long stop() waits for a device that hangs.
@@ -96,13 +117,12 @@ constexpr std::chrono::milliseconds longest_stop{500};
 }  // namespace
 
 io::RecordingHead recording_head(const Session& session, const DeviceInfo& device,
-                                 const Source& source, const RenderSetup& setup,
-                                 const OnProgress& progress) {
+                                 const io::VolumeIdentity& volume, const RenderSetup& setup) {
     const Field& field = session.renderer.field;
     io::RecordingHead head;
     head.version = PALPATE_VERSION;
     head.begun = utc_now();
-    head.volume = io::identify(field.volume(), to_names(source), progress);
+    head.volume = volume;
     head.solid = field.solid();
     head.interpolation = field.interpolation();
     head.background = field.background();
@@ -117,12 +137,12 @@ io::RecordingHead recording_head(const Session& session, const DeviceInfo& devic
 
 Run::Run(std::shared_ptr<Data> data, const Setup& setup, const OnProgress& progress)
     : data_(std::move(data)),
-      setup_(setup),
+      setup_(placed_beside(setup, data_->loaded())),
       field_(make_field(data_->start(), setup.field, setup.render.method.method)) {
-    const double isovalue = isovalue_of(data_->loaded(), setup, progress);
+    const double isovalue = isovalue_of(data_->loaded(), setup_, progress);
     if (progress) progress(1);
-    auto device = open_for(field_, isovalue, setup, this, progress);
-    take(make_session(field_, isovalue, device->info(), setup, progress));
+    auto device = open_for(field_, isovalue, setup_, this, progress);
+    take(make_session(field_, isovalue, device->info(), setup_, progress));
     hold(std::move(device));
 }
 
@@ -284,8 +304,9 @@ std::string Run::device_problem() const {
            ": the session has ended and the force is zero; check the device, then start again";
 }
 
-void Run::send(const Command& command) {
+void Run::send(const Command& asked) {
     Servo& servo = started_servo();
+    const Command command = placed_beside(asked, data_->loaded());
     check(command, settings_, kind_of(field_));
     const std::int64_t after = last_tick();
     if (!servo.send(command)) {
@@ -408,7 +429,7 @@ void Run::record_together(std::span<Run* const> runs, const std::filesystem::pat
         }
         if (heads.empty()) data.check_recording();
         heads.push_back(recording_head(run->session_now(), run->device_->info(),
-                                       data.loaded().source, run->setup_.render, progress));
+                                       data.identity(progress), run->setup_.render));
     }
     const auto recording = std::make_shared<io::RecordingWriter>(path, heads, data.pace());
     std::exception_ptr lost;

@@ -7,6 +7,7 @@
 
 #include "io/system/number.hpp"
 #include "palpate/baselines/methods.hpp"
+#include "palpate/run/beside.hpp"
 #include "palpate/run/statistics.hpp"
 
 namespace palpate::run {
@@ -124,6 +125,11 @@ double isovalue_of(const LoadedVolume& loaded, const Setup& setup, const OnProgr
 }
 
 std::string layers_warning(const io::LayersFile& file, const LoadedVolume& loaded) {
+    if (file.layers.labels) {
+        std::string warning =
+            warning_beside(file.layers.label_volume, file.layers.labels->geometry(), loaded);
+        if (!warning.empty()) return warning;
+    }
     const std::string& units = loaded.values.units;
     if (!file.units.empty() && file.units != "%" && file.units != units) {
         return "the layers are in " + file.units + "; " + loaded.name +

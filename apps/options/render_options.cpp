@@ -11,6 +11,7 @@
 #include "apps/options/no_effect.hpp"
 #include "apps/options/values.hpp"
 #include "io/system/number.hpp"
+#include "palpate/run/beside.hpp"
 #include "palpate/run/labels.hpp"
 #include "palpate/settings.hpp"
 
@@ -197,6 +198,14 @@ run::RenderSetup RenderOptions::setup() const {
     }
     warn_of_no_effect(*command_, run::without_effect_in_replay(setup));
     return setup;
+}
+
+run::RenderSetup RenderOptions::setup_in(const run::LoadedVolume& volume) const {
+    run::RenderSetup made = setup();
+    if (auto& file = made.layers) {
+        file->layers.labels = run::labels_beside(file->layers.labels, volume);
+    }
+    return made;
 }
 
 }  // namespace palpate::app

@@ -28,6 +28,8 @@ struct RenderOptions {
     /// for an option that makes no sense without another, io::InputError for a volume that cannot
     /// be read. Warns on standard error of options that do nothing.
     run::RenderSetup setup() const;
+    /// The same for rendering offline: labels lie beside this volume. A run sees to that itself.
+    run::RenderSetup setup_in(const run::LoadedVolume& volume) const;
 
   private:
     void add_penetrability_to(CLI::App& command);

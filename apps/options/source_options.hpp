@@ -63,6 +63,8 @@ double required_isovalue(const run::LoadedVolume& loaded, const Field& field,
 /// The same, but of a file without --isovalue the first level that its histogram suggests.
 double suggested_isovalue(const run::LoadedVolume& loaded, const Field& field,
                           const run::FieldSetup& setup);
+/// run::layers_warning() on standard error.
+void warn_of_layers(const io::LayersFile& layers, const run::LoadedVolume& loaded);
 /// The warning alone.
 void warn_of_isovalue(const Field& field, double isovalue);
 

@@ -35,9 +35,9 @@ void write_trajectory(const io::Trajectory& trajectory, const fs::path& path) {
 
 /// Renders the motion; writes trajectory, trace and path to files.
 void feel(Demo& demo, const DemoOptions& options, const fs::path& folder) {
-    Renderer renderer =
-        make_renderer(demo.field, demo.isovalue,
-                      run::offline_settings(options.render.setup(), demo.field, demo.isovalue));
+    Renderer renderer = make_renderer(
+        demo.field, demo.isovalue,
+        run::offline_settings(options.render.setup_in(demo.loaded), demo.field, demo.isovalue));
     write_trajectory(demo.trajectory, folder / "trajectory.csv");
     io::TraceWriter trace(folder / "trace.csv");
     std::optional<io::PathWriter> path;

@@ -96,9 +96,10 @@ std::string Remote::take_volume(run::Run& run, bridge::VolumePushed& volume) {
     run::LoadedVolume loaded = loaded_from(volume);
     const std::string name = loaded.name;
     if (is_label_map(volume.name)) {
-        run.send(command::UseLayers{
-            std::make_shared<const Layers>(run::layers_by_label(loaded).layers)});
-        return name + " as labels";
+        const io::LayersFile file = run::layers_by_label(loaded);
+        run.send(command::UseLayers{std::make_shared<const Layers>(file.layers)});
+        const std::string warning = run::layers_warning(file, run.data().loaded());
+        return name + " as labels" + (warning.empty() ? "" : ": " + warning);
     }
     if (run.recording()) {
         throw std::invalid_argument("the session is recorded: a recording has one volume");

@@ -173,7 +173,7 @@ void replay(const ReplayOptions& options) {
     const run::LoadedVolume loaded = load_for_terminal(options.source);
     const Field field = run::make_field(run::start_samples(loaded), options.field,
                                         options.render.given.method.method);
-    const run::RenderSetup render = options.render.setup();
+    const run::RenderSetup render = options.render.setup_in(loaded);
     const double isovalue = required_isovalue(loaded, field, options.field, render);
     Renderer renderer = make_renderer(
         field, isovalue, run::offline_settings(render, field, isovalue, stop_if_interrupted));

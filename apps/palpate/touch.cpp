@@ -261,6 +261,8 @@ void touch(const CLI::App& command, const TouchOptions& options) {
                                             options.unpaced ? Pace::by_steps : Pace::own_thread);
     std::vector<LiveHand> hands = open_hands(data, setups);
     warn_of_isovalue(hands.front().run->field(), hands.front().run->isovalue());
+    const auto& layers = hands.front().run->setup().render.layers;
+    if (layers) warn_of_layers(*layers, data->loaded());
     check_saving(*data, options);
     if (!options.commands.empty()) read_commands(options.commands, hands);
     if (!options.brush.empty()) take_up_brush(hands, options.brush);

@@ -58,6 +58,7 @@ int show(QApplication& application, const app::ViewOptions& options) {
     viewer::MainWindow window(request);
     if (const auto size = options.window_size()) window.resize((*size)[0], (*size)[1]);
     if (!options.size.empty() || !options.screenshot.empty()) window.forget_layout();
+    viewer::remember_nothing(!options.screenshot.empty());
     if (!options.screenshot.empty()) window.messages().set_unattended();
     window.show();
     open(window, options);

@@ -5,6 +5,7 @@
 #include "bindings/python/progress.hpp"
 #include "bindings/python/record.hpp"
 #include "palpate/io/layers_file.hpp"
+#include "palpate/run/beside.hpp"
 #include "palpate/run/labels.hpp"
 
 namespace palpate::python {
@@ -109,6 +110,20 @@ void bind_layers_class(py::module_& module) {
         py::arg("path"), "As JSON. Raises OutputError.");
 }
 
+io::LayersFile layers_by_label(const run::LoadedVolume& labels,
+                               const std::optional<io::LayersFile>& like,
+                               const run::LoadedVolume* beside) {
+    io::LayersFile file = run::layers_by_label(labels, like);
+    if (!beside) return file;
+    file.layers.labels = run::labels_beside(file.layers.labels, *beside);
+    const std::string warning =
+        run::warning_beside(file.layers.label_volume, file.layers.labels->geometry(), *beside);
+    if (!warning.empty() && PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 1) != 0) {
+        throw py::error_already_set();
+    }
+    return file;
+}
+
 }  // namespace
 
 void bind_layers(py::module_& module) {
@@ -145,10 +160,13 @@ void bind_layers(py::module_& module) {
             return names;
         },
         "The names of the built-in sets.");
-    module.def("layers_by_label", &run::layers_by_label, py::arg("labels"),
-               py::arg("like") = py::none(),
-               "Layers whose places are the labels of a LoadedVolume (a segmentation), with the\n"
-               "feel of `like` where it is given.");
+    module.def(
+        "layers_by_label", &layers_by_label, py::arg("labels"), py::arg("like") = py::none(),
+        py::kw_only(), py::arg("beside") = py::none(),
+        "Layers whose places are the labels of a LoadedVolume (a segmentation), with the\n"
+        "feel of `like` where it is given. beside: the LoadedVolume that is touched. Labels\n"
+        "without orientation or spacing get those that were given to its load(), as a Run\n"
+        "does. Warns if only one of the two has an orientation or a spacing.");
 }
 
 }  // namespace palpate::python

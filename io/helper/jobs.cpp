@@ -198,16 +198,23 @@ class Workshop {
         made.push_back(inside_);
         const fs::path parent = target_.has_parent_path() ? target_.parent_path() : ".";
         for (const fs::path& file : made) {
-            const fs::path to = parent / file.filename();
             std::error_code ignored;  // a new file has the usual mode
-            const auto old = fs::status(to, ignored);
+            const auto old = fs::status(parent / file.filename(), ignored);
             if (fs::exists(old) && !give_mode(file, old.permissions())) {
                 throw Failure("cannot be given the mode of the file it replaces (" + reason(errno) +
                               ")");
             }
-            if (!replace_synced(file, to)) {
-                throw Failure("cannot be put in its place (" + reason(errno) + ")");
+            // Now, because it takes long for a large one and can still be cancelled.
+            const int whole = open_to_read(file);
+            if (whole >= 0) {
+                (void)synchronise(whole);
+                ::close(whole);
             }
+        }
+        report({{"placing", true}});
+        for (const fs::path& file : made) {
+            if (replace_synced(file, parent / file.filename())) continue;
+            throw Failure("cannot be put in its place (" + reason(errno) + ")");
         }
         fs::remove(marker());
         fs::remove(folder_);

@@ -10,6 +10,8 @@
 // REQUEST is JSON, with "own_memory": the bytes that the helper may allocate for itself.
 // Lines of JSON come back on descriptor 4: {"progress":0.5}, {"doing":"a file"},
 // and at the end {"error":"..."} or {"done":{...}}. Doubles in JSON survive to the bit.
+// {"placing":true} comes before the written file gets its name. After that, the caller waits for
+// the end.
 // Who explores lives until descriptor 3, a socket, is closed. From there it reads lines of JSON:
 // {"channel":0,"time":0} asks what image is in the file,
 // {"array":"...","first":[...],"count":[...]} where chunks lie. With "size" in the REQUEST the file

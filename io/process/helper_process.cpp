@@ -251,7 +251,8 @@ class Running {
             if (errors_open_) errors_open_ = drain(errors, error_text_);
             if (error_text_.size() > 8192) error_text_.erase(0, error_text_.size() - 4096);
             take_lines(give, start);
-            if (progress) progress(fraction_);
+            // What is being put in its place counts as written: it is not cancelled any more.
+            if (progress && !placing_) progress(fraction_);
             const std::chrono::duration<double> elapsed = Clock::now() - start;
             if (elapsed.count() > job_.time_limit_s) return false;
         }
@@ -291,6 +292,7 @@ class Running {
             if (!line.is_object()) continue;
             fraction_ = line.value("progress", fraction_);
             doing_ = line.value("doing", doing_);
+            placing_ = line.value("placing", placing_);
             error_ = line.value("error", error_);
             if (line.contains("done")) done_ = line["done"];
             if (!give || !line.contains("read")) continue;
@@ -339,6 +341,7 @@ class Running {
     std::string pending_, error_text_, error_, doing_;
     nlohmann::json done_;
     double fraction_ = 0;
+    bool placing_ = false;            // of a file that is written
     std::vector<std::byte> sending_;  // of which `sent_` bytes have gone
     std::size_t sent_ = 0;
 };

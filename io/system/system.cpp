@@ -118,7 +118,7 @@ bool write_to_stream(int descriptor, std::string_view bytes, const timespec* mos
 
 }  // namespace
 
-int open_to_write(const std::filesystem::path& path) {
+int open_to_write(const std::filesystem::path& path, const std::function<void()>& wait) {
     const auto lacks_reader = [&] {
         struct stat about {};
         const bool is_pipe = errno == ENXIO && ::stat(path.c_str(), &about) == 0;
@@ -131,6 +131,7 @@ int open_to_write(const std::filesystem::path& path) {
         while ((file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY)) < 0) {
             problem = errno;
             if (!lacks_reader()) break;
+            if (wait) wait();
             if (signals.wait({}, &between) == 0) continue;
             problem = errno;
             break;

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -39,8 +40,9 @@ bool give_mode(const std::filesystem::path& file, std::filesystem::perms mode);
 /// else that is no file. Everything that is not meant for streams opens files by this.
 int open_to_read(const std::filesystem::path& path);
 /// A file that is there, or a stream. A pipe is waited for until it has a reader, or until a signal
-/// comes to this thread. Then it throws WaitEnded.
-int open_to_write(const std::filesystem::path& path);
+/// comes to this thread. Then it throws WaitEnded. Meanwhile `wait`, which may throw, is called
+/// twenty times a second.
+int open_to_write(const std::filesystem::path& path, const std::function<void()>& wait = {});
 /// A descriptor of its own.
 int open_standard_output();
 /// Of a file that is not there yet.

@@ -102,7 +102,7 @@ int open_to_read(const std::filesystem::path& path) {
     return opened(path, _O_RDONLY);
 }
 
-int open_to_write(const std::filesystem::path& path) {
+int open_to_write(const std::filesystem::path& path, const std::function<void()>&) {
     return opened(path, _O_WRONLY);
 }
 

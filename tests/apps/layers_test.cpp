@@ -135,6 +135,47 @@ TEST(LabelsOption, feels_the_segments_of_a_segmentation_by_name) {
     EXPECT_TRUE(contains(other.err, "has no label 'bolt'; it has plate")) << other.err;
 }
 
+/// The same place told by the index alone, in a file that has no orientation: z falls there.
+void put_bare_labels(const ScratchFolder& folder) {
+    std::string text =
+        "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 24 24 24\nspacings: 1 1 1\nencoding: "
+        "raw\n\n";
+    for (int i = 0; i < 24 * 24 * 24; ++i) text += i / 576 < 12 ? '\4' : '\0';
+    put_bytes(folder / "bare.nrrd", text);
+}
+
+TEST(LabelsOption, lie_beside_a_volume_whose_orientation_is_given) {
+    const ScratchFolder folder;
+    put_bare_labels(folder);
+    put_bytes(folder / "t.csv", "t,x,y,z\n0,-12,12,4\n0.1,-12,12,-1\n");
+    const std::string felt =
+        "replay bare.nrrd --trajectory t.csv -o a.csv --labels bare.nrrd --orientation ";
+    const Outcome done = palpate(folder, felt + "RPI");
+    ASSERT_EQ(done.status, 0) << done.err;
+    EXPECT_FALSE(contains(done.err, "warning")) << done.err;
+    EXPECT_EQ(story_of(rows_of(folder / "a.csv")).at(1), "label 4|") << "below z = 0";
+}
+
+TEST(LabelsOption, warns_where_only_one_file_has_an_orientation) {
+    const ScratchFolder folder;
+    put_bare_labels(folder);
+    put_segmentation(folder);
+    put_bytes(folder / "t.csv", "t,x,y,z\n0,0,0,0\n0.1,1,1,1\n");
+    for (const auto& [command, lacks] :
+         {std::pair("replay s.seg.nrrd -o a.csv --trajectory t.csv", "bare.nrrd does not give"),
+          std::pair("touch s.seg.nrrd --unpaced --seconds 0.1", "bare.nrrd does not give")}) {
+        const Outcome done = palpate(folder, std::string(command) + " --labels bare.nrrd");
+        EXPECT_EQ(done.status, 0) << done.err;
+        EXPECT_TRUE(contains(done.err, std::string(lacks) + " its orientation")) << done.err;
+    }
+    const Outcome other =
+        palpate(folder, "replay bare.nrrd -o a.csv --trajectory t.csv --labels s.seg.nrrd");
+    EXPECT_TRUE(contains(other.err, "bare.nrrd does not give its orientation")) << other.err;
+    const Outcome both =
+        palpate(folder, "replay bare.nrrd -o a.csv --trajectory t.csv --labels bare.nrrd");
+    EXPECT_FALSE(contains(both.err, "orientation")) << both.err;
+}
+
 /// The levels of two.json and the label of s.seg.nrrd.
 void put_mixed(const ScratchFolder& folder) {
     std::string text = two_layers;

@@ -18,11 +18,12 @@ namespace palpate::io::test {
 namespace {
 
 /// A helper that is a shell script.
-ReadOptions with_script(const ScratchFolder& folder, const std::string& commands) {
+template <class Options = ReadOptions>
+Options with_script(const ScratchFolder& folder, const std::string& commands) {
     const auto path = folder / "helper";
     put_bytes(path, "#!/bin/bash\n" + commands + "\n");
     std::filesystem::permissions(path, std::filesystem::perms::owner_all);
-    ReadOptions options;
+    Options options;
     options.helper = path;
     return options;
 }
@@ -127,6 +128,22 @@ TEST_F(HelperProcess, a_missing_helper_is_said) {
     EXPECT_TRUE(contains(refusal(file_, options), "reinstall Palpate"));
     put_bytes(folder_ / "nothing", "not a program");
     EXPECT_TRUE(contains(refusal(file_, options), "reinstall Palpate"));
+}
+
+TEST_F(HelperProcess, a_file_that_has_got_its_name_is_written_and_not_cancelled) {
+    const auto written = folder_ / "b.nrrd", ended = folder_ / "ended";
+    auto options = with_script<WriteOptions>(
+        folder_, "echo '{\"placing\":true}' >&4\n: > \"$2\"\necho '{\"done\":{}}' >&4\n: > '" +
+                     ended.string() + "'");
+    struct Cancelled {};
+    int calls = 0;
+    options.progress = [&](double) {
+        if (++calls > 1) throw Cancelled();
+        EXPECT_TRUE(support::comes_true([&] { return std::filesystem::exists(ended); }));
+    };
+    const Volume volume(Geometry{Index3(2, 2, 2)}, std::vector<std::uint8_t>(8));
+    EXPECT_NO_THROW(write_volume(volume, written, options));
+    EXPECT_TRUE(std::filesystem::exists(written));
 }
 
 TEST_F(HelperProcess, an_exception_from_progress_ends_the_helper) {

@@ -326,3 +326,17 @@ def test_an_orientation_has_its_order_in_its_name_and_is_the_same_everywhere():
     trace = palpate.replay(field, scene.isovalue, [0.0, 0.001], [[20, 0, 0], [19, 0, 0]],
                            orientation_xyzw=[turn, turn], tool="rod:3")
     assert numpy.allclose(trace.hand_orientation_xyzw, [turn, turn])
+
+
+def test_labels_lie_beside_a_volume_whose_orientation_is_given(tmp_path):
+    bare, oriented = tmp_path / "a.nrrd", tmp_path / "b.nrrd"
+    header = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\n"
+    bare.write_bytes((header + "spacings: 1 1 1\n\n").encode() + bytes(32) + b"\3" * 32)
+    oriented.write_bytes((header + "space: RAS\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n\n").encode() + bytes(64))
+    labels = palpate.load(bare)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        palpate.layers_by_label(labels, beside=palpate.load(bare, orientation="RAS"))
+        palpate.layers_by_label(labels, beside=palpate.load(bare))
+    with pytest.warns(UserWarning, match="a.nrrd does not give its orientation"):
+        palpate.layers_by_label(labels, beside=palpate.load(oriented))

@@ -99,10 +99,52 @@ std::optional<Vec3> surface_in_view(const Field& field, double isovalue, const V
     return std::nullopt;
 }
 
+std::optional<Approach> approach_to(const Field& field, double isovalue, const Vec3& to,
+                                    const Vec3& towards_viewer, std::span<const Vec3> points) {
+    const Geometry& geometry = field.geometry();
+    const double inwards = field.solid() == Solid::above ? 1 : -1;
+    const bool inside = inwards * (value_at(field, to) - isovalue) > 0;
+    const Vec3 outwards = -inwards * gradient_at(field, to);
+    std::vector<Vec3> sides{towards_viewer};
+    if (outwards.norm() > 0) sides.push_back(outwards.normalized());
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const double sign : {1.0, -1.0}) sides.push_back(sign * geometry.direction.col(axis));
+    }
+    const double voxel = geometry.spacing.maxCoeff();
+    std::optional<Approach> best;
+    double least = std::numeric_limits<double>::max();
+    for (const Vec3& side : sides) {
+        const auto surface = surface_under(field, isovalue, to, side);
+        if (!surface && inside) continue;
+        const double solid = surface ? (*surface - to).dot(side) : 0;
+        const double counted = std::max(0.0, solid - voxel);
+        if (counted > least - 0.1 * voxel) continue;  // the first of those that are alike
+        least = counted;
+        best = Approach{side};
+    }
+    if (!best) return best;
+    best->surface = tool_on_surface(field, isovalue, to, best->towards, points);
+    if (best->surface && (*best->surface - to).dot(best->towards) <= 0) best->surface.reset();
+    return best;
+}
+
 std::vector<Vec3> route_in_front(const Geometry& geometry, const Vec3& from, const Vec3& to,
-                                 const Vec3& towards) {
-    const double depth = std::max(front_of(extent_along(geometry, towards)), from.dot(towards));
-    return {at_depth(from, towards, depth), at_depth(to, towards, depth), to};
+                                 const Vec3& leaving, const Vec3& towards) {
+    const auto out = [&](const Vec3& point, const Vec3& side) {
+        const double front = front_of(extent_along(geometry, side));
+        return at_depth(point, side, std::max(front, point.dot(side)));
+    };
+    std::vector<Vec3> stops{out(from, leaving)};
+    if (leaving.dot(towards) < 0) {  // to the other side: past a third one
+        const Vec3 across = towards - towards.dot(leaving) * leaving;
+        stops.push_back(out(stops.back(),
+                            across.norm() > 1e-6 ? across.normalized() : leaving.unitOrthogonal()));
+    }
+    const Vec3 before = out(stops.back(), towards);
+    if (before != stops.back()) stops.push_back(before);
+    stops.push_back(at_depth(to, towards, before.dot(towards)));
+    stops.push_back(to);
+    return stops;
 }
 
 }  // namespace palpate::viewer

@@ -37,9 +37,21 @@ std::optional<Vec3> tool_on_surface(const Field& field, double isovalue, const V
 std::optional<Vec3> surface_in_view(const Field& field, double isovalue, const Vec3& towards,
                                     const Vec3& up);
 
-/// The stops of a hand that draws back out of the grid towards the viewer, goes across in front of
-/// it, and forward to `to` [mm, physical].
+/// The side from which a hand comes to a point.
+struct Approach {
+    Vec3 towards = Vec3::UnitZ();  ///< a unit vector to where it comes from
+    std::optional<Vec3> surface =
+        {};  ///< where the tool touches on the way; nothing: the way is free
+};
+/// To a point of a slice. The side is that of the viewer, the outside of the surface at the point,
+/// or an axis of the grid: the first one from which at most a voxel of the solid is in the way, or
+/// else the one with the least solid. Nothing if the solid reaches out of the grid on all sides.
+std::optional<Approach> approach_to(const Field& field, double isovalue, const Vec3& to,
+                                    const Vec3& towards_viewer, std::span<const Vec3> points);
+
+/// The stops of a hand that draws back out of the grid to the side `leaving`, goes round it to the
+/// side `towards` (both unit vectors), and forward to `to` [mm, physical].
 std::vector<Vec3> route_in_front(const Geometry& geometry, const Vec3& from, const Vec3& to,
-                                 const Vec3& towards);
+                                 const Vec3& leaving, const Vec3& towards);
 
 }  // namespace palpate::viewer

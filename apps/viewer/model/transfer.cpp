@@ -90,11 +90,15 @@ struct Levels {
     bool hounsfield;
 };
 
+}  // namespace
+
 bool looks_like_hounsfield(const Volume& volume) {
     constexpr double least = -4096, air = -500;  // what scanners write outside of their round view
     return (volume.type() == SampleType::int16 || volume.type() == SampleType::float32) &&
            volume.minimum() >= least && volume.minimum() <= air && volume.maximum() > 0;
 }
+
+namespace {
 
 /// Whether a is less than b by more than rounding errors.
 bool apart(double a, double b, double range) {

@@ -25,9 +25,11 @@ ColourTable colour_table(const std::string& name);
 /// A colour for a label without one of its own: neighbours differ.
 pictures::Colour label_colour(int value);
 
+/// int16 or float from -4096..-500 up, as CT has them.
+bool looks_like_hounsfield(const Volume& volume);
+
 /// The presets that are made for such data, in the order in which people are offered them: those of
-/// CT where the data look like Hounsfield units (int16 or float from -4096..-500 up), or like those
-/// and 1000 or 1024 more.
+/// CT where the data look like Hounsfield units, or like those and 1000 or 1024 more.
 std::vector<std::string> preset_names(const run::Histogram& histogram, const Volume& volume);
 
 /// A transfer function for this volume; its points lie within the data's range. In Hounsfield units

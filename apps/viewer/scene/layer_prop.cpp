@@ -1,4 +1,4 @@
-// Sorts layers by depth at each pixel, and draws one on a rectangle that fills the viewport.
+// Sorts layers by depth at each pixel, and draws one on a rectangle in the viewport.
 #include "apps/viewer/scene/layer_prop.hpp"
 
 #include <vtkOpenGLRenderWindow.h>
@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace palpate::viewer {
 namespace {
@@ -66,9 +67,12 @@ constexpr const char* shader = R"(//VTK::System::Dec
 in vec2 texCoord;
 uniform sampler2D colours;
 uniform sampler2D depths;
+uniform float across;
 void main() {
-  gl_FragData[0] = texture(colours, texCoord);
-  gl_FragDepth = texture(depths, texCoord).r;
+  vec2 at = vec2(0.5 + across * (texCoord.x - 0.5), texCoord.y);
+  if (at.x < 0.0 || at.x > 1.0) discard;
+  gl_FragData[0] = texture(colours, at);
+  gl_FragDepth = texture(depths, at).r;
 }
 )";
 
@@ -117,6 +121,14 @@ void LayerProp::upload(vtkOpenGLRenderWindow& window) {
     uploaded_ = true;
 }
 
+/// Widths of the image in that of the viewport, if it is as high.
+double LayerProp::across(vtkViewport& viewport) const {
+    const auto [width, height] = std::pair{viewport.GetSize()[0], viewport.GetSize()[1]};
+    const double ratio = double(width) * owner_->height / (double(height) * owner_->width);
+    constexpr double rounding = 0.01;  // of images with fewer pixels
+    return std::abs(ratio - 1) < rounding ? 1 : ratio;
+}
+
 int LayerProp::RenderOpaqueGeometry(vtkViewport* viewport) {
     if (!layer_ || layer_->rgba.empty()) return 0;
     auto* const renderer = vtkRenderer::SafeDownCast(viewport);
@@ -143,6 +155,7 @@ int LayerProp::RenderOpaqueGeometry(vtkViewport* viewport) {
     depth_->Activate();
     quad_->Program->SetUniformi("colours", colour_->GetTextureUnit());
     quad_->Program->SetUniformi("depths", depth_->GetTextureUnit());
+    quad_->Program->SetUniformf("across", static_cast<float>(across(*viewport)));
     quad_->Render();
     colour_->Deactivate();
     depth_->Deactivate();

@@ -19,7 +19,8 @@ namespace palpate::viewer {
 /// without layers. All must have as many pixels.
 pictures::Layer composed(std::vector<pictures::Layer> layers, const pictures::Layer& solid);
 
-/// Fills the viewport, wherever the camera is. Drawn in its turn among the opaque props.
+/// Fills the viewport, wherever the camera is. Drawn in its turn among the opaque props. An image
+/// of another shape, from before a change of size, keeps its shape and fills the viewport's height.
 class LayerProp : public vtkProp {
   public:
     static LayerProp* New();
@@ -40,6 +41,7 @@ class LayerProp : public vtkProp {
 
   private:
     void upload(vtkOpenGLRenderWindow& window);
+    double across(vtkViewport& viewport) const;
 
     std::shared_ptr<const RenderedImage> owner_;
     const pictures::Layer* layer_ = nullptr;

@@ -131,6 +131,7 @@ class Scene : public QVTKOpenGLNativeWidget {
     bool fitted_ = true;  // the camera shows the whole volume, also after a change of size
     Drag drag_ = Drag::none;
     QPointF drag_from_, drag_start_;
+    bool clicks_ = false;              // the button went down to touch, and did not drag yet
     std::optional<std::size_t> held_;  // the handle of the cut under the pointer
     CutHandle held_from_;              // as it was when the drag began
     Vec3 held_to_ = Vec3::Zero();      // where the drag has led

@@ -1,4 +1,5 @@
 // The widget's input: moves camera, probe and cut by mouse, and finds points on what is seen.
+#include <QApplication>
 #include <QMouseEvent>
 #include <QWheelEvent>
 
@@ -103,13 +104,17 @@ void Scene::mousePressEvent(QMouseEvent* event) {
         show_held(handle_at(drag_from_));
         if (held_) hold_handle();
     }
-    const bool touches = drag_ == Drag::probe && !(event->modifiers() & Qt::ShiftModifier);
-    if (touches && parts_->background.field()) {
+    clicks_ = drag_ == Drag::probe && !(event->modifiers() & Qt::ShiftModifier);
+    if (clicks_ && parts_->background.field()) {
         Q_EMIT probe_pressed(point_at(camera_, view_size(), {drag_from_.x(), drag_from_.y()}));
     }
 }
 
 void Scene::mouseMoveEvent(QMouseEvent* event) {
+    // A hand that trembles clicks all the same. A drag then catches up with the pointer.
+    const double way = (event->localPos() - drag_start_).manhattanLength();
+    if (drag_ == Drag::probe && clicks_ && way < QApplication::startDragDistance()) return;
+    clicks_ = false;
     const QPointF by = event->localPos() - drag_from_;
     drag_from_ = event->localPos();
     if (by.isNull() || !parts_->background.field()) return;
@@ -157,8 +162,9 @@ std::optional<Vec3> Scene::surface_at(const QPointF& pixel) const {
     const auto& shown = parts_->background.shown();
     const auto& field = parts_->background.field();
     if (!shown || !field) return std::nullopt;
-    const auto x = static_cast<int>(pixel.x() * shown->width / width());
-    const int y = shown->height - 1 - static_cast<int>(pixel.y() * shown->height / height());
+    const double scale = double(shown->height) / height();  // as LayerProp draws it
+    const auto x = static_cast<int>(0.5 * shown->width + scale * (pixel.x() - 0.5 * width()));
+    const int y = shown->height - 1 - static_cast<int>(pixel.y() * scale);
     if (x < 0 || y < 0 || x >= shown->width || y >= shown->height) return std::nullopt;
     const auto depth_at = [&](const pictures::Layer& layer) {
         const std::size_t i = std::size_t(y) * std::size_t(shown->width) + std::size_t(x);

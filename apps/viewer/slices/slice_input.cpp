@@ -17,8 +17,8 @@ void SlicePane::mousePressEvent(QMouseEvent* event) {
     } else if (event->button() == Qt::LeftButton) {
         if (shown_.probe && event->modifiers() & Qt::ControlModifier) {
             drag_ = Drag::probe;
-            drag_layer_ = layer();
-            aim_at(event->localPos());
+            aimed_ = {map().sample(event->localPos()), layer()};
+            Q_EMIT probe_aimed(physical(aimed_));
         } else {
             drag_ = Drag::crosshair;
             choose_at(event->localPos());
@@ -42,7 +42,7 @@ void SlicePane::mouseMoveEvent(QMouseEvent* event) {
             choose_at(event->localPos());
             break;
         case Drag::probe:
-            aim_at(event->localPos());
+            drag_probe({map().sample(event->localPos()), aimed_.layer});
             break;
         case Drag::window:
             change_window(drag);
@@ -88,8 +88,7 @@ void SlicePane::wheelEvent(QWheelEvent* event) {
     wheel_ -= 120 * steps;
     if (steps == 0) return;
     if (drag_ == Drag::probe) {
-        drag_layer_ = next_layer(drag_layer_, steps);
-        aim_at(event->position());
+        drag_probe({map().sample(event->position()), next_layer(aimed_.layer, steps)});
     } else {
         step_slice(steps);
     }

@@ -382,9 +382,13 @@ void SlicePane::choose_at(const QPointF& pixel) {
     choose(plane().physical(in_data({at.x(), at.y(), layer()})));
 }
 
-void SlicePane::aim_at(const QPointF& pixel) {
-    const QPointF at = map().sample(pixel);
-    Q_EMIT probe_aimed(plane().physical({at.x(), at.y(), drag_layer_}));
+Vec3 SlicePane::physical(const Aim& aim) const {
+    return plane().physical({aim.at.x(), aim.at.y(), aim.layer});
+}
+
+void SlicePane::drag_probe(const Aim& to) {
+    Q_EMIT probe_dragged(physical(to) - physical(aimed_));
+    aimed_ = to;
 }
 
 /// Whole layers, up towards the patient's left, back or head; where coarser ones are shown, as far

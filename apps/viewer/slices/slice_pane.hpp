@@ -73,6 +73,8 @@ class SlicePane : public QWidget {
     void crosshair_chosen(const palpate::Vec3& physical);
     /// The point to which the probe is asked to go.
     void probe_aimed(const palpate::Vec3& physical);
+    /// How far it is dragged from there.
+    void probe_dragged(const palpate::Vec3& by);
     void window_chosen(const palpate::viewer::GreyWindow& window);
     /// While measuring: under the pointer [mm, physical].
     void point_chosen(const palpate::Vec3& at);
@@ -92,6 +94,10 @@ class SlicePane : public QWidget {
   private:
     struct Content;
     enum class Drag { none, crosshair, probe, window, move };
+    struct Aim {
+        QPointF at;  // [samples]
+        double layer = 0;
+    };
 
     const SlicePlane& plane() const;
     SliceMap map() const;
@@ -106,7 +112,8 @@ class SlicePane : public QWidget {
     void make_picture(const SliceMap& where);
     void choose(const Vec3& physical);
     void choose_at(const QPointF& pixel);
-    void aim_at(const QPointF& pixel);
+    Vec3 physical(const Aim& aim) const;
+    void drag_probe(const Aim& to);
     void step_slice(int steps);
     double next_layer(double from, int steps) const;
     void zoom_at(const QPointF& pixel, double factor);
@@ -121,7 +128,7 @@ class SlicePane : public QWidget {
     HandSnapshots snapshots_;
     SliceView view_;
     Drag drag_ = Drag::none;
-    double drag_layer_ = 0;  // of the slice that the probe is dragged in
+    Aim aimed_;  // where the pointer has led the probe
     QPointF drag_from_;
     std::optional<QPointF> pointer_;
     QTimer later_;

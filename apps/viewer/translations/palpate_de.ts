@@ -1683,6 +1683,10 @@ Strg-Rad vergrößert, Umschalt-Rad verschiebt, Strg+0 zeigt wieder alles.</tran
         <source>Reading %1</source>
         <translation>%1 wird gelesen</translation>
     </message>
+    <message>
+        <source>For CT in Hounsfield units, which these data do not look like</source>
+        <translation>Für CT in Hounsfield-Einheiten, wonach diese Daten nicht aussehen</translation>
+    </message>
 </context>
 <context>
     <name>palpate::viewer::LevelChart</name>
@@ -2374,6 +2378,14 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
             <numerusform>%n Dateien wurden abgelegt: Legen Sie eine ab, oder den Ordner der Schichtbilder</numerusform>
         </translation>
     </message>
+    <message>
+        <source>The overlay may lie elsewhere</source>
+        <translation>Die Überlagerung liegt vielleicht woanders</translation>
+    </message>
+    <message>
+        <source>Sides of the body are not known: say how the volume lies, and its spacing</source>
+        <translation>Die Seiten des Körpers sind nicht bekannt: angeben, wie das Volumen liegt, und seinen Abstand</translation>
+    </message>
 </context>
 <context>
     <name>palpate::viewer::MeasureController</name>
@@ -2760,6 +2772,14 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <source>Nothing can be touched here from in front of the cut</source>
         <translation>Hier lässt sich von vor dem Schnitt aus nichts berühren</translation>
     </message>
+    <message>
+        <source>The solid around this point has no outside</source>
+        <translation>Der feste Bereich um diesen Punkt hat keine Außenseite</translation>
+    </message>
+    <message>
+        <source>This point is inside: the probe touches in front of it. Drag to press deeper</source>
+        <translation>Dieser Punkt liegt innen: Die Sonde berührt die Oberfläche davor. Ziehen Sie, um tiefer zu drücken</translation>
+    </message>
 </context>
 <context>
     <name>palpate::viewer::RawDialog</name>
@@ -2888,6 +2908,10 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
     <message>
         <source>Recorded up to this change: the session began anew</source>
         <translation>Bis zu dieser Änderung aufgezeichnet: Die Sitzung hat neu begonnen</translation>
+    </message>
+    <message>
+        <source>Preparing to record to %1</source>
+        <translation>Die Aufzeichnung in %1 wird vorbereitet</translation>
     </message>
 </context>
 <context>
@@ -3389,13 +3413,6 @@ Ein Zug endet zwei Sekunden, nachdem die Hand alle Schichten verlassen hat.</tra
     <message>
         <source>Making the tool</source>
         <translation>Das Werkzeug wird erzeugt</translation>
-    </message>
-</context>
-<context>
-    <name>palpate::viewer::Views</name>
-    <message>
-        <source>Sides of the body are not known: say how the volume lies, and its spacing</source>
-        <translation>Die Seiten des Körpers sind nicht bekannt: angeben, wie das Volumen liegt, und seinen Abstand</translation>
     </message>
 </context>
 <context>

@@ -21,6 +21,7 @@
 #include "apps/viewer/window/views.hpp"
 #include "palpate/io/address.hpp"
 #include "palpate/io/sample_volume.hpp"
+#include "palpate/run/beside.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -32,16 +33,6 @@ std::filesystem::path path_of(const QString& name) {
 /// A session or layers.
 bool is_json(const QString& path) {
     return path.endsWith(".json", Qt::CaseInsensitive);
-}
-
-/// What replaces the file's own orientation and spacing now.
-io::GivenGrid given_grid(const run::Source& source) {
-    if (const auto* file = std::get_if<run::FileSource>(&source.from)) {
-        return {file->spacing, file->orientation};
-    }
-    const auto* store = std::get_if<run::StoreSource>(&source.from);
-    return store ? io::GivenGrid{store->options.spacing, store->options.orientation}
-                 : io::GivenGrid{};
 }
 
 /// The tool of a mesh, whose points take time. Nothing for other tools, and for one that cannot be
@@ -69,6 +60,14 @@ run::Source with_grid(run::Source source, const io::GivenGrid& grid) {
     if (auto* file = std::get_if<run::FileSource>(&source.from)) put_into(*file);
     if (auto* store = std::get_if<run::StoreSource>(&source.from)) put_into(store->options);
     return source;
+}
+
+/// Only the name of the label volume stays, as in a session file.
+void forget_labels(SessionHand& hand) {
+    if (!hand.settings || !hand.settings->layers || !hand.settings->layers->labels) return;
+    Layers layers = *hand.settings->layers;
+    layers.labels.reset();
+    hand.settings->layers = std::make_shared<const Layers>(std::move(layers));
 }
 
 }  // namespace
@@ -227,7 +226,8 @@ void FileController::ask_grid() {
     const auto use = [this](const io::GivenGrid& given) {
         messages_.guarded([&] { use_grid(given); });
     };
-    messages_.ask(make_grid_dialog(grid, given_grid(content_.source()), messages_.window(), use));
+    messages_.ask(
+        make_grid_dialog(grid, run::given_grid(content_.source()), messages_.window(), use));
 }
 
 void FileController::open_volume(const run::Source& source) {
@@ -332,9 +332,13 @@ void FileController::use_grid(const io::GivenGrid& grid) {
     session.crosshair.reset();
     session.measurements.clear();
     session.look.cut = Cut::nothing;
+    // Labels are read again, and lie beside the volume as it lies now.
+    forget_labels(session);
+    for (SessionHand& other : session.others) forget_labels(other);
     load(session.source,
          [this, session, request = request_for_same()](std::shared_ptr<Opened> opened) {
              feel_session(std::move(opened), session, request, false);
+             layers_.restore(session, {});
          });
 }
 

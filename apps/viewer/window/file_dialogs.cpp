@@ -21,6 +21,15 @@ struct FileDialogs {
 
 constexpr int most_recent = 10;
 
+constexpr const char* forgetful = "forgetful";  // a property of the application
+
+/// For the next start.
+void keep(const char* key, const QVariant& value) {
+    if (!QCoreApplication::instance()->property(forgetful).toBool()) {
+        QSettings().setValue(key, value);
+    }
+}
+
 QString last_folder() {
     return QSettings().value("folder", QDir::currentPath()).toString();
 }
@@ -74,7 +83,7 @@ QString ask_save_name(QWidget* window, const QString& title, const QString& name
     dialog.setOption(QFileDialog::DontConfirmOverwrite, !replaces);
     dialog.selectFile(name);
     while (dialog.exec() == QDialog::Accepted) {
-        QSettings().setValue("folder", dialog.directory().absolutePath());
+        keep("folder", dialog.directory().absolutePath());
         const QString path = dialog.selectedFiles().value(0);
         const bool whole = !filter.isEmpty() || path.endsWith("." + suffix, Qt::CaseInsensitive);
         if (whole) return path;
@@ -90,8 +99,12 @@ QString ask_open_raw_name(QWidget* window) {
                          FileDialogs::tr("All files (*)"));
 }
 
+void remember_nothing(bool nothing) {
+    QCoreApplication::instance()->setProperty(forgetful, nothing);
+}
+
 void remember_folder(const QString& path) {
-    if (!is_no_file(path)) QSettings().setValue("folder", QFileInfo(path).absolutePath());
+    if (!is_no_file(path)) keep("folder", QFileInfo(path).absolutePath());
 }
 
 void remember_file(const QString& path) {
@@ -100,7 +113,7 @@ void remember_file(const QString& path) {
     QStringList recent = recent_files();
     recent.removeAll(name);
     recent.prepend(name);
-    QSettings().setValue("recent", QStringList(recent.mid(0, most_recent)));
+    keep("recent", QStringList(recent.mid(0, most_recent)));
 }
 
 QStringList recent_files() {

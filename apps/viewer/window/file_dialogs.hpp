@@ -24,6 +24,8 @@ QString ask_save_name(QWidget* window, const QString& title, const QString& name
 
 /// The dialogs begin in the folder of this file.
 void remember_folder(const QString& path);
+/// True: folders and files are not remembered from now on, in this process.
+void remember_nothing(bool nothing);
 /// Puts a file first in the list of recent ones.
 void remember_file(const QString& path);
 QStringList recent_files();

@@ -101,11 +101,11 @@ QLabel* label_over(QWidget& owner, const QString& name, const QString& style) {
     return label;
 }
 
-/// Shows words with the label's middle there, but inside its owner; hidden where there are none.
-/// Words that are too wide for the owner are wrapped.
-void say(QLabel& label, const QString& words, const QPoint& middle) {
+/// Shows words over a pane, with the label's middle there, but inside of it; hidden where there are
+/// none. Words that are too wide for the pane are wrapped.
+void say(QLabel& label, const QString& words, QWidget& owner, const QPoint& middle) {
     if (words.isEmpty()) return label.hide();
-    const QWidget& owner = *label.parentWidget();
+    if (label.parentWidget() != &owner) label.setParent(&owner);
     const bool fits =
         label.wordWrap() ? label.width() == owner.width() : label.width() <= owner.width();
     if (label.text() != words || !fits) {
@@ -165,7 +165,8 @@ QString Hints::reason_of(const Snapshot& now) {
 
 void Hints::observe(const HandSnapshots& hands, bool brush) {
     const std::optional<Snapshot>& now = hands[content_.hand()];
-    const int line = 2 * scene_.fontMetrics().height();
+    QWidget& pane = views_.main_pane();
+    const int line = 2 * pane.fontMetrics().height();
     const bool live = content_.live() && now;
     const QString problem = problem_of_hands();
     const QString reason = !problem.isEmpty()    ? problem
@@ -173,10 +174,10 @@ void Hints::observe(const HandSnapshots& hands, bool brush) {
                            : content_.playback() ? tr("A recording is played: Esc leaves it")
                                                  : QString();
     // Below the clock.
-    say(*reason_, reason, {scene_.width() / 2, 2 * line});
+    say(*reason_, reason, pane, {pane.width() / 2, 2 * line});
     say(*brush_,
         live && brush ? tr("The brush is on: it changes what it touches (B: off)") : QString(),
-        {scene_.width() / 2, scene_.height() - line});
+        pane, {pane.width() / 2, pane.height() - line});
     show_depth(live ? now : std::nullopt);
     show_numbers(hands);
     if (!recordings_.recording()) return recording_->hide();
@@ -184,7 +185,7 @@ void Hints::observe(const HandSnapshots& hands, bool brush) {
     const QString clock = QString("<span style='color: #ff4040'>●</span> %1:%2")
                               .arg(seconds / 60)
                               .arg(seconds % 60, 2, 10, QChar('0'));
-    say(*recording_, clock, {scene_.width() - 3 * line, line});
+    say(*recording_, clock, pane, {pane.width() - 3 * line, line});
 }
 
 /// The problem of a device, with its hand if there are several. Empty if there is none.
@@ -212,7 +213,8 @@ void Hints::show_numbers(const HandSnapshots& hands) {
         }
         const Pixel at = pixel_of(scene_.camera(), scene_.view_size(), now->session.tick.proxy.hip);
         const int line = scene_.fontMetrics().height();
-        say(*numbers_[hand], QString::number(hand), QPoint(int(at.x) + line, int(at.y) - line));
+        say(*numbers_[hand], QString::number(hand), scene_,
+            QPoint(int(at.x) + line, int(at.y) - line));
     }
 }
 
@@ -233,7 +235,7 @@ void Hints::show_depth(const std::optional<Snapshot>& now) {
                                       .arg(now->session.tick.force.norm(), 0, 'f', 1);
     const Pixel hand = pixel_of(scene_.camera(), scene_.view_size(), proxy.hip);
     const int line = scene_.fontMetrics().height();
-    say(*depth_, words, QPoint(int(hand.x), int(hand.y) + 3 * line));
+    say(*depth_, words, scene_, QPoint(int(hand.x), int(hand.y) + 3 * line));
 }
 
 }  // namespace palpate::viewer

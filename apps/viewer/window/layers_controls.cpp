@@ -13,6 +13,7 @@
 
 #include "apps/viewer/model/overlay.hpp"
 #include "apps/viewer/model/session_file.hpp"
+#include "apps/viewer/model/transfer.hpp"
 #include "apps/viewer/panel/names.hpp"
 #include "apps/viewer/panel/stroke_plot.hpp"
 #include "apps/viewer/window/content.hpp"
@@ -64,6 +65,7 @@ LayersControls::LayersControls(const Desk& desk, LookControls& look, OverlayCont
     } catch (const io::InputError&) {
         // Without the folder of the built-in ones there are those that are opened.
     }
+    built_in_ = files_.size();
     connect(&content_, &Content::closed, this, [this] { reader_.abandon(); });
     connect(&content_, &Content::run_changed, this, [this] {
         offer();
@@ -325,8 +327,16 @@ void LayersControls::offer() {
     if (labels) {
         choices.push_back(choice_of_labels(*overlay));
     }
-    for (const io::LayersFile& file : files_) {
+    const run::LoadedVolume& loaded = content_.volume()->loaded;
+    const bool may_be_ct = !loaded.values.units.empty() || looks_like_hounsfield(loaded.volume);
+    for (std::size_t i = 0; i < files_.size(); ++i) {
+        const io::LayersFile& file = files_[i];
         choices.push_back(choice_of(file));
+        LayersChoice& choice = choices.back();
+        if (i < built_in_ && choice.possible && file.units == "HU" && !may_be_ct) {
+            choice.possible = false;
+            choice.note = tr("For CT in Hounsfield units, which these data do not look like");
+        }
         if (!labels) continue;
         if (const auto named = by_name(file, *overlay)) choices.push_back(choice_of(*named));
     }
@@ -383,8 +393,11 @@ void LayersControls::restore(const SessionFile& session, const QString& file) {
     if (read->empty()) return;
     reader_.start(
         tr("Reading the labels"),
-        [read, from = std::filesystem::path(file.toStdString())](const io::Progress&) {
-            for (auto& [its, layers] : *read) layers = run::with_labels(layers, from);
+        [read, from = std::filesystem::path(file.toStdString()),
+         volume = content_.volume()](const io::Progress&) {
+            for (auto& [its, layers] : *read) {
+                layers = run::with_labels(layers, from, volume->loaded);
+            }
         },
         [this, read] { content_.use_layers(*read); });
 }

@@ -166,6 +166,7 @@ class LayersControls : public EffectForm, protected Desk {
     LookControls& look_;
     OverlayControls& overlays_;
     std::vector<io::LayersFile> files_;  // built in, then those that were opened
+    std::size_t built_in_ = 0;           // how many of them
     BackgroundTask reader_;              // of layers and of labels
     SharedLayers saved_;
     double low_ = 0, high_ = 1;

@@ -109,7 +109,7 @@ void MainWindow::build() {
     for (BackgroundTask* task :
          {&files_.reader(), &files_.loader(), &panel_->overlay_controls().loader(), &saver_.task(),
           &panel_->layers_controls().reader(), &panel_->tool_controls().reader(),
-          &panel_->tool_controls().maker()}) {
+          &panel_->tool_controls().maker(), &recordings_.preparing()}) {
         layout->addWidget(make_progress_strip(*task));
     }
     setCentralWidget(centre);
@@ -145,7 +145,12 @@ void MainWindow::connect_parts() {
     connect(&content_, &Content::renamed, this, &MainWindow::show_title);
     connect(&content_, &Content::run_started, this, &MainWindow::show_grid);
     connect(&content_, &Content::playback_started, this, &MainWindow::show_grid);
-    connect(views_, &Views::grid_asked, actions_.find("choose_grid"), &QAction::trigger);
+    connect(&panel_->overlay_controls(), &OverlayControls::overlay_changed, this,
+            &MainWindow::show_missing);
+    connect(views_, &Views::missing_asked, this, [this] {
+        if (lacks_grid()) return actions_.find("choose_grid")->trigger();
+        panel_->show_section(panel_->overlay_controls());
+    });
     // A closed volume goes back to the system: large blocks at once (glibc would raise this limit
     // as they are freed, and keep later ones), the rest once the threads that draw have released
     // it.
@@ -196,16 +201,32 @@ void MainWindow::show_title() {
     setWindowTitle(tr("%1[*]%2 – Palpate").arg(volume, session));
 }
 
-/// Shows which facts about the grid are missing, and names the views accordingly.
+/// Names the views for the sides of the body or the axes of the grid.
 void MainWindow::show_grid() {
-    const Geometry& grid = content_.volume()->loaded.volume.geometry();
-    name_views(grid.oriented);
+    name_views(content_.volume()->loaded.volume.geometry().oriented);
     use(saved_preferences());
-    const bool missing = content_.from_file() && !(grid.oriented && grid.measured);
-    views_->set_missing(!missing        ? QString()
-                        : grid.oriented ? tr("No spacing in the file")
-                        : grid.measured ? tr("No orientation in the file")
-                                        : tr("No orientation and no spacing in the file"));
+    show_missing();
+}
+
+bool MainWindow::lacks_grid() const {
+    if (!content_.volume() || !content_.from_file()) return false;
+    const Geometry& grid = content_.volume()->loaded.volume.geometry();
+    return !(grid.oriented && grid.measured);
+}
+
+/// Tells which facts about the grids of volume and overlay are missing.
+void MainWindow::show_missing() {
+    if (!lacks_grid()) {
+        const QString warning = panel_->overlay_controls().warning();
+        return views_->set_missing(
+            warning.isEmpty() ? QString() : tr("The overlay may lie elsewhere"), warning);
+    }
+    const Geometry& grid = content_.volume()->loaded.volume.geometry();
+    views_->set_missing(
+        grid.oriented   ? tr("No spacing in the file")
+        : grid.measured ? tr("No orientation in the file")
+                        : tr("No orientation and no spacing in the file"),
+        tr("Sides of the body are not known: say how the volume lies, and its spacing"));
 }
 
 void MainWindow::restore_layout() {
@@ -317,7 +338,7 @@ void MainWindow::rest_or_wake(const HandSnapshots& now) {
 }
 
 bool MainWindow::settled() const {
-    return !files_.loading() && !saver_.saving() && !probe_.travelling() &&
+    return !files_.loading() && !saver_.saving() && !probe_.travelling() && recordings_.settled() &&
            panel_->overlay_controls().settled() && !panel_->layers_controls().reader().busy() &&
            !panel_->tool_controls().reader().busy() && !panel_->tool_controls().maker().busy() &&
            (!content_.volume() || (views_->scene().settled() && details_.settled()));

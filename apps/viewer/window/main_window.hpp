@@ -79,6 +79,8 @@ class MainWindow : public QMainWindow {
     void connect_welcome();
     void show_title();
     void show_grid();
+    bool lacks_grid() const;
+    void show_missing();
     void restore_layout();
     void use(const Preferences& preferences);
     void show_readout(const Snapshot& now);

@@ -13,6 +13,7 @@
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
 #include "apps/viewer/window/views.hpp"
+#include "palpate/run/beside.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -34,6 +35,7 @@ OverlayControls::OverlayControls(const Desk& desk, LookControls& look)
       image_surface_({2000000, 40000}),
       loader_(messages_),
       name_(named(new QLabel, "overlay_name")),
+      beside_(new Note("overlay_beside", Note::Kind::warning)),
       labels_(named(new QListWidget, "overlay_labels",
                     tr("Labels; a double click goes to where one lies"))) {
     const Parts<OverlayLook> its{[this]() -> const OverlayLook& { return its_look(); },
@@ -76,7 +78,7 @@ OverlayControls::OverlayControls(const Desk& desk, LookControls& look)
         {label_for(tr("Colours"), colours), colours, label_for(tr("Level"), level), level}, 3);
     make_labels();
     body_ = column_of({slices, scene, image_, labels_, feel_});
-    column_in(this, {row_of({open, close_, name_}, 2), body_});
+    column_in(this, {row_of({open, close_, name_}, 2), beside_, body_});
     connect(&look, &LookControls::look_changed, this, [this] {
         refresh();
         show_surfaces();
@@ -140,6 +142,7 @@ void OverlayControls::ask_open() {
 }
 
 void OverlayControls::open(const run::Source& source) {
+    if (!content_.volume()) return;
     messages_.forget();
     struct Read {
         std::shared_ptr<const Overlay> overlay;
@@ -149,10 +152,10 @@ void OverlayControls::open(const run::Source& source) {
     const QString name = short_name(QString::fromStdString(run::name_of(source)));
     loader_.start(
         tr("Opening %1").arg(name),
-        [source, read](const io::Progress& progress) {
+        [source, read, volume = content_.volume()](const io::Progress& progress) {
             constexpr double reading = 0.6;
-            const run::LoadedVolume loaded =
-                run::load(source, [&](double part) { progress(reading * part); });
+            const run::LoadedVolume loaded = run::load_beside(
+                source, volume->loaded, [&](double part) { progress(reading * part); });
             read->overlay = std::make_shared<const Overlay>(make_overlay(loaded, source));
             read->labels = label_surfaces(
                 *read->overlay, [&](double part) { progress(reading + (1 - reading) * part); });
@@ -165,6 +168,9 @@ void OverlayControls::use(std::shared_ptr<const Overlay> overlay,
     if (!content_.volume()) return;
     keep_file(run::place_of(overlay->source));
     overlay_ = std::move(overlay);
+    beside_->say(QString::fromStdString(run::warning_beside(
+        run::name_of(overlay_->source), overlay_->volume.geometry(), content_.volume()->loaded)));
+    if (!warning().isEmpty()) messages_.show_done(warning());
     label_surfaces_ = std::move(labels);
     const std::optional<double> level = its_look().level;
     if (overlay_->is_label_map()) {
@@ -199,6 +205,7 @@ void OverlayControls::close_overlay() {
     if (!overlay_) return;
     keep_file({});
     overlay_.reset();
+    beside_->say({});
     label_surfaces_.clear();
     image_surface_.clear();
     colour_labels();

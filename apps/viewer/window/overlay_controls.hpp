@@ -35,6 +35,8 @@ class OverlayControls : public EffectForm, protected Desk {
     void colour_labels();
     bool settled() const { return !loader_.busy() && !image_surface_.extracting(); }
     BackgroundTask& loader() { return loader_; }
+    /// run::warning_beside() of the overlay; empty: none.
+    QString warning() const { return beside_->text(); }
 
   Q_SIGNALS:
     /// Another overlay, or none.
@@ -58,6 +60,7 @@ class OverlayControls : public EffectForm, protected Desk {
     SurfaceMaker image_surface_;
     BackgroundTask loader_;
     QLabel* name_;
+    Note* beside_;
     QPushButton *close_, *feel_;
     QWidget *body_, *image_;
     QListWidget* labels_;

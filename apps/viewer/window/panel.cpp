@@ -89,6 +89,12 @@ void Panel::build() {
         }
         return section;
     };
+    // What everybody needs is unfolded: forces, isovalue, layers, tool and device.
+    const auto folded = [&part](const QString& title, const char* name, QWidget* content) {
+        Section* section = part(title, name, content);
+        section->set_open(false);
+        return section;
+    };
     column->addWidget(hands_);
     column->addWidget(part(tr("Session"), "session_part", session_section(effect_)));
     column->addWidget(part(tr("Isovalue"), "isovalue_part", isovalue_));
@@ -100,21 +106,23 @@ void Panel::build() {
         page->setAccessibleName(QString(title).remove('&'));
     };
     add(tr("Fee&l"), {part(tr("Layers"), "layers_part", layers_),
-                      part(tr("Pressing through (penetrability)"), "penetrability_part",
-                           penetrability_section(effect_, isovalue_->chart())),
+                      folded(tr("Pressing through (penetrability)"), "penetrability_part",
+                             penetrability_section(effect_, isovalue_->chart())),
                       part(tr("Tool"), "tool_part", tool_),
-                      part(tr("Force"), "force_part", force_section(effect_))});
+                      folded(tr("Force"), "force_part", force_section(effect_))});
     add(tr("L&ook"), {part(tr("Look"), "look_part", look_)});
     add(tr("D&ata"),
         {part(tr("Edit"), "edit_part", brush_), part(tr("Overlay"), "overlay_part", overlay_)});
-    Section* loop = part(tr("Advanced: servo loop"), "loop_part", loop_);
-    loop->set_open(false);
-    add(tr("Devi&ce"), {part(tr("Device"), "device_part", device_), loop});
+    add(tr("Devi&ce"), {part(tr("Device"), "device_part", device_),
+                        folded(tr("Advanced: servo loop"), "loop_part", loop_)});
 }
 
-void Panel::raise_page(const QWidget& section) {
+void Panel::show_section(const QWidget& content) {
     for (int i = 0; i < tabs_->count(); ++i) {
-        if (tabs_->widget(i)->isAncestorOf(&section)) tabs_->setCurrentIndex(i);
+        if (tabs_->widget(i)->isAncestorOf(&content)) tabs_->setCurrentIndex(i);
+    }
+    for (auto* section : findChildren<Section*>()) {
+        if (section->isAncestorOf(&content)) section->set_open(true);
     }
 }
 
@@ -132,14 +140,14 @@ void Panel::answer(const Command& command, const QString& why) {
                    command);
     auto* section = findChild<Section*>(part);
     section->say(why);
-    if (!why.isEmpty()) raise_page(*section);
+    if (!why.isEmpty()) show_section(*section);
 }
 
 void Panel::connect_levels() {
     connect(&isovalue_->chart(), &LevelChart::curve_changed, layers_, &LayersControls::set_curve);
     connect(layers_, &LayersControls::curve_chosen, this, &Panel::show_marks);
     connect(look_, &LookControls::look_changed, this, &Panel::show_marks);
-    connect(overlay_, &OverlayControls::feel_wanted, this, [this] { raise_page(*layers_); });
+    connect(overlay_, &OverlayControls::feel_wanted, this, [this] { show_section(*layers_); });
 }
 
 void Panel::show_marks() {

@@ -39,10 +39,11 @@ class Panel : public QWidget {
     HandSwitch& hand_switch() { return *hands_; }
     ToolControls& tool_controls() { return *tool_; }
     LoopView& loop_view() { return *loop_; }
+    /// The section with this content is unfolded, and its page in front.
+    void show_section(const QWidget& content);
 
   private:
     void build();
-    void raise_page(const QWidget& section);
     void answer(const Command& command, const QString& why);
     void connect_levels();
     void enable();

@@ -34,13 +34,13 @@ constexpr double hold_seconds = 0.6, press_speed = 3;
 }  // namespace
 
 ProbeController::ProbeController(const Desk& desk) : Controller(desk) {
-    connect(&views_.scene(), &Scene::probe_dragged, this, [this](const Vec3& by) {
+    connect(&views_, &Views::probe_dragged, this, [this](const Vec3& by) {
         forget_press();
         move_by(by);
     });
     connect(&views_, &Views::double_clicked, this, &ProbeController::forget_press);
     connect(&views_.scene(), &Scene::tool_turned, this, &ProbeController::turn_by);
-    connect(&views_, &Views::probe_aimed, this, &ProbeController::move_to);
+    connect(&views_, &Views::probe_aimed, this, &ProbeController::reach);
     connect(&views_.scene(), &Scene::probe_pressed, this, [this](const Vec3& at) {
         pressed_ = at;
         since_.start();
@@ -50,11 +50,13 @@ ProbeController::ProbeController(const Desk& desk) : Controller(desk) {
     connect(&views_.scene(), &Scene::probe_released, this, [this] { held_ = false; });
     connect(&content_, &Content::run_started, this, [this] {
         for (bool& hand : approaching_) hand = true;
+        came_from_ = {};
     });
     connect(&content_, &Content::device_changed, this, [this] {
         set_pointing(possible());
         end_route();
         approaching_[content_.hand()] = true;
+        came_from_[content_.hand()].reset();
     });
     connect(&content_, &Content::hand_changed, this, &ProbeController::take_over);
     connect(&content_, &Content::playback_started, this, [this] { set_pointing(false); });
@@ -137,10 +139,18 @@ void ProbeController::drop_route() {
     Q_EMIT lifted(false);
 }
 
-/// Back out of the volume, across in front of it, and forward.
-void ProbeController::send_to(const DeviceTransform& transform, const Vec3& to) {
-    route_ =
-        route_in_front(content_.live()->field().geometry(), aimed(transform), to, towards_viewer());
+/// [mm, physical] under a surface that is touched lightly.
+double ProbeController::touch_depth(const DeviceTransform& transform) const {
+    const double stiffness = content_.live()->settings().force.stiffness;
+    return transform.scale * std::min(touch_newtons / stiffness, deepest_touch);
+}
+
+/// Back out of the volume, round it to the side `towards`, and forward.
+void ProbeController::send_to(const DeviceTransform& transform, const Vec3& to,
+                              const Vec3& towards) {
+    route_ = route_in_front(content_.live()->field().geometry(), aimed(transform), to,
+                            came_from_[content_.hand()].value_or(towards), towards);
+    came_from_[content_.hand()] = towards;
     std::ranges::reverse(route_);
     behind_cut_ = false;
     aim(transform, route_.back());
@@ -191,12 +201,32 @@ void ProbeController::touch(const Vec3& at) {
     const double away = std::abs((proxy.scp - *surface).dot(towards));
     const double voxel = geometry.spacing.maxCoeff(), near = grab_voxels * voxel;
     if (aside.norm() <= grab && away <= near && proxy.mode == Mode::constrained) return;
-    const double stiffness = content_.live()->settings().force.stiffness;
-    const double depth = transform.scale * std::min(touch_newtons / stiffness, deepest_touch);
-    send_to(transform, *surface - depth * towards);
+    send_to(transform, *surface - touch_depth(transform) * towards, towards);
     // Parts that are cut away would stop the proxy: it starts behind them, off the visible part.
     behind_cut_ = !cuts.empty();
     if (behind_cut_) route_.insert(route_.begin() + 1, *surface + off_voxels * voxel * towards);
+}
+
+void ProbeController::reach(const Vec3& to) {
+    const auto now = possible() ? content_.snapshot() : std::nullopt;
+    if (!now) return;
+    approaching_[content_.hand()] = false;
+    const ProxyUpdate& proxy = now->session.tick.proxy;
+    const double near = grab_voxels * content_.live()->field().geometry().spacing.maxCoeff();
+    if ((proxy.hip - to).norm() <= near && proxy.mode == Mode::constrained) return;
+    const DeviceTransform& transform = now->session.transform;
+    const Content::OuterSurface outer = content_.outer_surface();
+    const auto approach =
+        approach_to(outer.field, outer.level, to, towards_viewer(), tool_points(transform));
+    if (!approach) return messages_.show_done(tr("The solid around this point has no outside"));
+    const Vec3& towards = approach->towards;
+    if (!approach->surface) return send_to(transform, to, towards);
+    const double below = (*approach->surface - to).dot(towards), most = touch_depth(transform);
+    if (below > most) {
+        messages_.show_done(
+            tr("This point is inside: the probe touches in front of it. Drag to press deeper"));
+    }
+    send_to(transform, *approach->surface - std::min(below, most) * towards, towards);
 }
 
 void ProbeController::observe() {
@@ -225,7 +255,7 @@ void ProbeController::approach(const Snapshot& now) {
     const auto rest =
         tool_on_surface(outer.field, outer.level, *surface, towards, tool_points(transform));
     const Vec3 off = off_voxels * field.geometry().spacing.maxCoeff() * towards;
-    send_to(transform, rest.value_or(*surface) + off);
+    send_to(transform, rest.value_or(*surface) + off, towards);
 }
 
 void ProbeController::travel(const Snapshot& now) {

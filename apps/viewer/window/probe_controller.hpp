@@ -24,6 +24,9 @@ class ProbeController : public Controller {
     /// Moves what the mouse aims at [mm, physical], not beyond the far side of the grid.
     void move_by(const Vec3& by);
     void move_to(const Vec3& to);
+    /// Lifts the hand and brings it from outside to a point of a slice. Where a surface is in the
+    /// way, probe or tool touches that lightly and goes no deeper.
+    void reach(const Vec3& to);
     /// `screen`: to the right, up, towards the viewer [voxels].
     void nudge(const Vec3& screen);
     /// Turns the tool by a rotation vector [radians, physical axes].
@@ -49,7 +52,8 @@ class ProbeController : public Controller {
     Vec3 aimed(const DeviceTransform& transform) const;
     void aim(const DeviceTransform& transform, const Vec3& physical);
     std::vector<Vec3> tool_points(const DeviceTransform& transform) const;
-    void send_to(const DeviceTransform& transform, const Vec3& to);
+    double touch_depth(const DeviceTransform& transform) const;
+    void send_to(const DeviceTransform& transform, const Vec3& to, const Vec3& towards);
     void forget_press();
     void take_over();
     void end_route();
@@ -61,8 +65,9 @@ class ProbeController : public Controller {
 
     // A run has begun: to the first surface, once there is a tick and the hand is chosen.
     PerHand<bool> approaching_;
-    std::vector<Vec3> route_;      // stops to come, the next one last [mm, physical]
-    bool behind_cut_ = false;      // its last part but one goes through what is cut away
+    PerHand<std::optional<Vec3>> came_from_;  // the side from which the last route led to its end
+    std::vector<Vec3> route_;                 // stops to come, the next one last [mm, physical]
+    bool behind_cut_ = false;                 // its last part but one goes through what is cut away
     std::optional<Vec3> pressed_;  // where the button went down, until it is a touch or a drag
     QElapsedTimer since_;          // then
     bool held_ = false;            // since then, without a drag

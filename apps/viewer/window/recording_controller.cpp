@@ -2,24 +2,67 @@
 // of the timeline to the player or the clock.
 #include "apps/viewer/window/recording_controller.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <exception>
+#include <filesystem>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include "apps/viewer/panel/timeline.hpp"
 #include "apps/viewer/window/content.hpp"
+#include "apps/viewer/window/file_dialogs.hpp"
 #include "apps/viewer/window/messages.hpp"
+#include "io/system/system.hpp"
 
 namespace palpate::viewer {
 
-RecordingController::RecordingController(const Desk& desk) : Controller(desk) {
+RecordingController::RecordingController(const Desk& desk)
+    : Controller(desk), preparing_(messages_) {
     connect(&content_, &Content::closing, this, &RecordingController::stop);
     connect(&content_, &Content::run_changed, this, &RecordingController::tell_end);
     connect(&content_, &Content::playback_started, this, &RecordingController::tell_playback);
 }
 
+namespace {
+
+/// Keeps a pipe open that has a reader. For files it is empty.
+class HeldPipe {
+  public:
+    HeldPipe(const std::filesystem::path& path, const std::function<void()>& wait) {
+        std::error_code error;
+        const bool is_pipe = std::filesystem::is_fifo(path, error);
+        if (is_pipe) descriptor_ = io::open_to_write(path, wait);
+    }
+    ~HeldPipe() {
+        if (descriptor_ >= 0) ::close(descriptor_);
+    }
+    HeldPipe(const HeldPipe&) = delete;
+    HeldPipe& operator=(const HeldPipe&) = delete;
+
+  private:
+    int descriptor_ = -1;
+};
+
+}  // namespace
+
 void RecordingController::start(const QString& path) {
+    if (!content_.live()) return;
+    const auto pipe = std::make_shared<std::unique_ptr<HeldPipe>>();
+    const std::filesystem::path file(path.toStdString());
+    preparing_.start(
+        tr("Preparing to record to %1").arg(short_name(path)),
+        [data = content_.data(), file, pipe](const io::Progress& progress) {
+            (void)data->identity([&](double part) { progress(part); });
+            *pipe = std::make_unique<HeldPipe>(file, [&] { progress(1); });
+        },
+        [this, path, pipe] { begin(path); });
+}
+
+/// Once that takes no time any more.
+void RecordingController::begin(const QString& path) {
     if (!content_.live()) return;
     messages_.guarded([&] {
         std::vector<run::Run*> hands;
@@ -33,6 +76,7 @@ void RecordingController::start(const QString& path) {
 }
 
 void RecordingController::stop() {
+    preparing_.abandon();
     if (!recording()) return;
     records_ = false;
     messages_.guarded([&] {

@@ -8,6 +8,7 @@
 
 #include "apps/viewer/panel/timeline_view.hpp"
 #include "apps/viewer/window/desk.hpp"
+#include "apps/viewer/window/messages.hpp"
 
 namespace palpate::io {
 class RecordingWriter;
@@ -23,9 +24,12 @@ class RecordingController : public Controller {
   public:
     explicit RecordingController(const Desk& desk);
 
-    /// Errors are shown.
+    /// In the background, until there is a checksum of the volume and a pipe has a reader. Errors
+    /// are shown.
     void start(const QString& path);
     void stop();
+    BackgroundTask& preparing() { return preparing_; }
+    bool settled() const { return !preparing_.busy(); }
     bool recording() const { return writer() != nullptr; }
     /// Ends a recording that cannot be written any more, which shows why, and tells of one that has
     /// ended otherwise; twice a second.
@@ -38,10 +42,12 @@ class RecordingController : public Controller {
 
   private:
     const io::RecordingWriter* writer() const;
+    void begin(const QString& path);
     void tell_playback();
     void tell_end();
     double seconds() const;
 
+    BackgroundTask preparing_;
     bool records_ = false;  // as far as the person knows
     int exit_status_ = 0;
     double began_ = 0;  // [s] of the run

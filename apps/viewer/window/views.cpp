@@ -1,6 +1,7 @@
 // Lays out the scene and the slices side by side, and keeps them in step.
 #include "apps/viewer/window/views.hpp"
 
+#include <QApplication>
 #include <QBoxLayout>
 #include <QMouseEvent>
 #include <QPushButton>
@@ -28,15 +29,12 @@ Views::Views(MakePainter make_painter, QWidget* parent)
       scene_(new Scene(nullptr, std::move(make_painter))),
       slices_{new SlicePane(0), new SlicePane(1), new SlicePane(2)},
       by_body_(slices_),
-      missing_(named(new QPushButton, "missing_grid",
-                     tr("Sides of the body are not known: say how the volume lies, and its "
-                        "spacing"))),
+      missing_(named(new QPushButton, "missing_grid")),
       across_(new QSplitter(Qt::Horizontal)),
       left_(new QSplitter(Qt::Vertical)),
       down_(new QSplitter(Qt::Vertical)) {
     // Above the panes, so that it covers no words of theirs.
     column_in(this, {missing_, across_})->setAlignment(missing_, Qt::AlignLeft);
-    missing_->setAccessibleName(missing_->toolTip());
     scene_->setObjectName("scene");
     scene_->setMinimumSize(200, 200);
     left_->addWidget(scene_);
@@ -51,11 +49,13 @@ Views::Views(MakePainter make_painter, QWidget* parent)
         pane->installEventFilter(this);
         connect(pane, &SlicePane::crosshair_chosen, this, &Views::choose_crosshair);
         connect(pane, &SlicePane::probe_aimed, this, &Views::probe_aimed);
+        connect(pane, &SlicePane::probe_dragged, this, &Views::probe_dragged);
         connect(pane, &SlicePane::window_chosen, this,
                 [this](const GreyWindow& window) { set(*this, &Shown::window, window); });
         connect(pane, &SlicePane::point_chosen, this, &Views::point_chosen);
         connect(pane, &SlicePane::point_pointed_at, this, &Views::point_pointed_at);
     }
+    connect(scene_, &Scene::probe_dragged, this, &Views::probe_dragged);
     connect(scene_, &Scene::point_chosen, this,
             [this](const Vec3& at) { Q_EMIT point_chosen(on_surface(at)); });
     connect(scene_, &Scene::point_pointed_at, this,
@@ -65,11 +65,13 @@ Views::Views(MakePainter make_painter, QWidget* parent)
         "QPushButton { background-color: #ffb000; color: black; border-radius: 4px; "
         "padding: 3px 8px; }");
     missing_->hide();
-    connect(missing_, &QPushButton::clicked, this, &Views::grid_asked);
+    connect(missing_, &QPushButton::clicked, this, &Views::missing_asked);
 }
 
-void Views::set_missing(const QString& words) {
+void Views::set_missing(const QString& words, const QString& tip) {
     missing_->setText(words);
+    missing_->setToolTip(tip);
+    missing_->setAccessibleName(tip);
     missing_->setVisible(!words.isEmpty());
 }
 
@@ -81,10 +83,26 @@ Vec3 Views::on_surface(const Vec3& seen) const {
     return hit.hit && hit.point != seen + near ? hit.point : seen;
 }
 
+/// Whether this press follows a double click at once, at the same place, as the third or fourth
+/// one of a hurried hand does.
+bool Views::follows_double_click(const QMouseEvent& press) {
+    const auto interval = static_cast<ulong>(QApplication::doubleClickInterval());
+    const bool follows =
+        clicked_twice_ && press.timestamp() - pressed_time_ <= interval &&
+        (press.globalPos() - pressed_).manhattanLength() < QApplication::startDragDistance();
+    clicked_twice_ = follows || press.type() == QEvent::MouseButtonDblClick;
+    pressed_time_ = press.timestamp();
+    pressed_ = press.globalPos();
+    return follows;
+}
+
+/// Of all panes, as the next click of several may go to another one.
 bool Views::eventFilter(QObject* watched, QEvent* event) {
-    if (event->type() == QEvent::MouseButtonDblClick) {
+    const bool twice = event->type() == QEvent::MouseButtonDblClick;
+    if (twice || event->type() == QEvent::MouseButtonPress) {
         const auto& mouse = static_cast<const QMouseEvent&>(*event);
-        if (mouse.button() == Qt::LeftButton && mouse.modifiers() == Qt::NoModifier) {
+        if (mouse.button() == Qt::LeftButton && follows_double_click(mouse)) return true;
+        if (twice && mouse.button() == Qt::LeftButton && mouse.modifiers() == Qt::NoModifier) {
             Q_EMIT double_clicked();
             toggle_alone(static_cast<QWidget*>(watched));
             return true;
@@ -96,6 +114,10 @@ bool Views::eventFilter(QObject* watched, QEvent* event) {
 void Views::toggle_alone(QWidget* pane) {
     alone_ = alone_ ? nullptr : pane;
     show_panes();
+}
+
+QWidget& Views::main_pane() {
+    return alone_ ? *alone_ : *scene_;
 }
 
 void Views::show_next_slice() {

@@ -38,8 +38,8 @@ class Views : public QWidget {
     /// The crosshair follows the probe, once it has touched something.
     void set_follow(bool follow) { follow_ = follow; }
     bool follows() const { return follow_; }
-    /// What the file does not say of the volume's grid, on a button over the panes; empty: none.
-    void set_missing(const QString& words);
+    /// What the files do not say of a grid, on a button over the panes; empty: none.
+    void set_missing(const QString& words, const QString& tip);
     void show_slices(bool shown);
     bool slices_shown() const { return slices_shown_; }
     /// Beside: the slices in a column beside the scene. Four: all panes of the same size, the
@@ -52,6 +52,8 @@ class Views : public QWidget {
     void show_next_slice();
     /// The pane that is shown alone, or null.
     const QWidget* alone() const { return alone_; }
+    /// That, or the scene.
+    QWidget& main_pane();
 
     Scene& scene() { return *scene_; }
     SlicePane& slice(int axis) { return *slices_.at(static_cast<std::size_t>(axis)); }
@@ -59,10 +61,12 @@ class Views : public QWidget {
   Q_SIGNALS:
     /// The user asks the probe to go to a point of a slice [mm, physical].
     void probe_aimed(const palpate::Vec3& to);
+    /// In any pane, or by the wheel: the motion of the probe [mm, physical].
+    void probe_dragged(const palpate::Vec3& by);
     /// A pane was enlarged, or all are shown again.
     void double_clicked();
     /// The button of set_missing() was pressed.
-    void grid_asked();
+    void missing_asked();
     /// While measuring.
     void point_chosen(const palpate::Vec3& at);
     void point_pointed_at(const palpate::Vec3& at);
@@ -73,6 +77,7 @@ class Views : public QWidget {
   private:
     template <class Tell>
     void in_all(Tell tell);
+    bool follows_double_click(const QMouseEvent& press);
     void choose_crosshair(const Vec3& physical);
     Vec3 on_surface(const Vec3& seen) const;
     void order_panes();
@@ -89,6 +94,10 @@ class Views : public QWidget {
     bool slices_shown_ = true;
     Shown shown_;
     bool follow_ = true, touched_ = false;
+    // The last press of the left button, and whether it was the second of a double click or later.
+    ulong pressed_time_ = 0;  // [ms] of the window system
+    QPoint pressed_;          // on the screen
+    bool clicked_twice_ = false;
 };
 
 }  // namespace palpate::viewer

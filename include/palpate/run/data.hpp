@@ -6,8 +6,10 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
+#include "palpate/io/recording.hpp"
 #include "palpate/run/player.hpp"
 #include "palpate/run/setup.hpp"
 #include "palpate/run/streamer.hpp"
@@ -37,6 +39,9 @@ class Data {
 
     /// As it was loaded.
     const LoadedVolume& loaded() const { return loaded_; }
+    /// The volume's place, size and checksum, for recordings. The first call takes a moment for
+    /// large data. Exceptions of `progress` are passed on. Any thread.
+    io::VolumeIdentity identity(const OnProgress& progress = {}) const;
     bool is_sequence() const { return player_ != nullptr; }
     bool is_streamed() const { return streamer_ != nullptr; }
     /// State of the samples of a store in memory; empty for other data.
@@ -96,6 +101,8 @@ class Data {
     std::unique_ptr<VolumeEditor> editor_;  // uses the streamer, if there is one
     mutable std::mutex mutex_;              // of kept_: a window saves on a thread of its own
     std::vector<std::filesystem::path> kept_;
+    mutable std::mutex identifying_;  // of identity_
+    mutable std::optional<io::VolumeIdentity> identity_;
 };
 
 }  // namespace palpate::run

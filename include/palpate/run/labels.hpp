@@ -24,8 +24,10 @@ io::LayersFile layers_by_label(const LoadedVolume& labels,
                                const std::optional<io::LayersFile>& like = std::nullopt);
 
 /// Recorded layers, with their label volume, if they have one, read again: from the working folder,
-/// or else from the folder of the recording. Throws io::InputError.
+/// or else from the folder of the recording. It lies beside `volume`, which is touched. Throws
+/// io::InputError.
 std::shared_ptr<const Layers> with_labels(std::shared_ptr<const Layers> layers,
-                                          const std::filesystem::path& recording);
+                                          const std::filesystem::path& recording,
+                                          const LoadedVolume& volume);
 
 }  // namespace palpate::run

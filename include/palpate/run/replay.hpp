@@ -60,6 +60,7 @@ class Replay {
     void carry_out(const Command& recorded);
 
     io::RecordingReader& reader_;
+    const LoadedVolume loaded_;
     std::string recording_;
     Session session_;
     RendererSettings start_;

@@ -24,8 +24,7 @@ namespace palpate::run {
 
 /// The head of a recording for a session that is about to begin.
 io::RecordingHead recording_head(const Session& session, const DeviceInfo& device,
-                                 const Source& source, const RenderSetup& setup,
-                                 const OnProgress& progress = {});
+                                 const io::VolumeIdentity& volume, const RenderSetup& setup);
 
 /// The queue of commands is full: earlier commands have not been executed yet.
 class QueueFull : public std::invalid_argument {
@@ -91,7 +90,7 @@ class Run {
     /// Throws std::invalid_argument, with the reason, for a command that cannot be executed, and
     /// for DeviceLimits that lower nothing; QueueFull if commands come too fast. While there are
     /// layers with surfaces, an isovalue has no effect. The last one applies when they are removed.
-    void send(const Command& command);
+    void send(const Command& asked);
     /// Commands that were sent and not carried out yet.
     std::int64_t waiting() const { return started_servo().waiting(); }
     /// Other than none: the device has failed, its force is zero and the session has ended.

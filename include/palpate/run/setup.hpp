@@ -129,7 +129,7 @@ double isovalue_of(const LoadedVolume& loaded, const FieldSetup& setup,
 double isovalue_of(const LoadedVolume& loaded, const Setup& setup, const OnProgress& progress = {});
 
 /// A warning if the volume does not declare the units of these layers, or has no densities at some
-/// of their levels. Otherwise empty.
+/// of their levels, or if their label volume may lie elsewhere (warning_beside()). Otherwise empty.
 std::string layers_warning(const io::LayersFile& layers, const LoadedVolume& loaded);
 
 /// The requested settings. `isovalue` is the lowest level that is touched if no minimum is given,

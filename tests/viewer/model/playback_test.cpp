@@ -34,7 +34,7 @@ struct Recorded {
         RendererSettings settings;
         settings.method = &update_exact;
         Session session{make_renderer(field, 76.5, settings), {}};
-        io::RecordingWriter writer(path, run::recording_head(session, {}, volume(), {}),
+        io::RecordingWriter writer(path, run::recording_head(session, {}, identity_of(session), {}),
                                    Pace::by_steps);
         std::vector<SessionEvent> events;
         for (int i = 0; i < count; ++i) {
@@ -64,6 +64,9 @@ struct Recorded {
         }
         writer.finish(0);
     }
+    static io::VolumeIdentity identity_of(const Session& session) {
+        return io::identify(session.renderer.field.volume(), run::to_names(volume()));
+    }
     static run::Source volume() { return run::source_named("synthetic:sphere:32x32x32"); }
     Playback play(std::size_t most_bytes = Playback::usual_bytes) const {
         return Playback::read(path, loaded, {}, most_bytes);
@@ -81,7 +84,8 @@ TEST(Playback, of_two_hands_has_the_snapshots_of_each) {
         RendererSettings settings;
         settings.method = &update_exact;
         sessions.push_back({make_renderer(linear_field(loaded.volume), level, settings), {}});
-        heads.push_back(run::recording_head(sessions.back(), {}, Recorded::volume(), {}));
+        heads.push_back(
+            run::recording_head(sessions.back(), {}, Recorded::identity_of(sessions.back()), {}));
     }
     io::RecordingWriter writer(path, heads, Pace::by_steps);
     for (int i = 0; i < 200; ++i) {

@@ -79,7 +79,7 @@ TEST(ProbeRoute, a_single_slice_has_a_front) {
 TEST(ProbeRoute, the_way_goes_round_the_grid_in_front) {
     Geometry geometry{Index3(11, 11, 11)};
     const Vec3 from(3, 4, 5), to(8, 1, 9);
-    const std::vector<Vec3> stops = route_in_front(geometry, from, to, towards);
+    const std::vector<Vec3> stops = route_in_front(geometry, from, to, towards, towards);
     ASSERT_EQ(stops.size(), 3U);
     const double front = extent_along(geometry, towards).front;
     EXPECT_EQ(stops[0].head<2>(), from.head<2>());
@@ -89,7 +89,50 @@ TEST(ProbeRoute, the_way_goes_round_the_grid_in_front) {
     EXPECT_EQ(stops[2], to);
     // A hand that is farther out already does not come nearer on its way across.
     const Vec3 far(3, 4, 50);
-    EXPECT_EQ(route_in_front(geometry, far, to, towards)[1][2], 50);
+    EXPECT_EQ(route_in_front(geometry, far, to, towards, towards)[1][2], 50);
+}
+
+TEST(ProbeRoute, the_way_from_one_side_to_any_other_stays_outside_of_the_grid) {
+    Geometry geometry{Index3(11, 11, 11)};
+    const Vec3 from(3, 4, 5), to(8, 1, 9);
+    for (const Vec3& leaving : {Vec3(0, 0, 1), Vec3(1, 2, -2), Vec3(-1, 0, 0.1)}) {
+        for (const Vec3& arriving :
+             {Vec3(0, 0, -1), Vec3(1, 0, 0), Vec3(-1, -2, 2), Vec3(2, 1, 0)}) {
+            const auto stops =
+                route_in_front(geometry, from, to, leaving.normalized(), arriving.normalized());
+            for (std::size_t i = 1; i + 1 < stops.size(); ++i) {
+                for (int part = 0; part <= 100; ++part) {
+                    const Vec3 at = stops[i - 1] + 0.01 * part * (stops[i] - stops[i - 1]);
+                    EXPECT_FALSE(((at.array() >= 0) && (at.array() <= 10)).all())
+                        << leaving.transpose() << " to " << arriving.transpose();
+                }
+            }
+            EXPECT_EQ(stops.back(), to);
+        }
+    }
+}
+
+TEST(ProbeRoute, a_point_of_a_slice_is_reached_from_where_least_is_in_the_way) {
+    const scenes::Scene scene = scenes::make_volume("sphere:48x48x48");
+    const Field field = linear_field(scene.volume);
+    const Vec3 centre = physical_centre(field.geometry());
+    const auto to = [&](const Vec3& point, std::span<const Vec3> tool = {}) {
+        return approach_to(field, scene.isovalue, point, towards, tool).value();
+    };
+    const double radius = (*surface_under(field, scene.isovalue, centre, towards) - centre).norm();
+    const Approach beside = to(centre + Vec3(radius + 3, 0, 0));
+    EXPECT_EQ(beside.towards, towards);
+    EXPECT_FALSE(beside.surface);
+    // At the back, where the viewer does not see the surface.
+    const Vec3 behind = centre + (radius - 2) * Vec3(0.6, 0, -0.8);
+    const Approach back = to(behind);
+    EXPECT_LT((back.towards - Vec3(0.6, 0, -0.8)).norm(), 0.1) << back.towards.transpose();
+    EXPECT_NEAR((back.surface.value() - behind).norm(), 2, 0.3);
+    EXPECT_GT(to(behind, std::vector<Vec3>{{0, 0, 2}, {0, 0, -2}}).surface.value().norm(),
+              back.surface.value().norm() + 1)
+        << "the tool touches before its middle does";
+    EXPECT_TRUE(to(centre).surface);
+    EXPECT_FALSE(approach_to(field, -1, centre, towards, {})) << "all is solid";
 }
 
 }  // namespace

@@ -44,6 +44,21 @@ TEST(DrawnScene, shows_a_ball_as_large_as_it_is_where_it_is) {
     EXPECT_NEAR(seen.count, 3.14159 * radius * radius * 16, 500);
 }
 
+TEST(DrawnScene, keeps_its_shape_until_there_is_a_picture_of_another_size) {
+    ShownScene shown;
+    const Field field = ball();
+    set(shown.scene, &Shown::look, bare());
+    shown.scene.set_field(field, 0.5);
+    shown.scene.set_camera(from_front(field));
+    shown.settled();
+    for (const int width : {200, 800}) {
+        shown.scene.resize(width, 320);
+        const Blob seen = blob(shown.scene.picture(), is_bone);
+        EXPECT_NEAR(seen.x, 0.5 * width, 2);
+        EXPECT_NEAR(seen.right - seen.left, seen.bottom - seen.top, 4) << width;
+    }
+}
+
 TEST(DrawnScene, is_empty_before_a_field_and_after_it_is_cleared) {
     ShownScene shown;
     const QImage before = shown.settled();

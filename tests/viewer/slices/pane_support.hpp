@@ -37,6 +37,8 @@ struct ShownPane {
                          [this](const Vec3& p) { chosen.push_back(p); });
         QObject::connect(&pane, &SlicePane::probe_aimed, &pane,
                          [this](const Vec3& p) { aimed.push_back(p); });
+        QObject::connect(&pane, &SlicePane::probe_dragged, &pane,
+                         [this](const Vec3& by) { dragged.push_back(by); });
         QObject::connect(&pane, &SlicePane::window_chosen, &pane,
                          [this](const GreyWindow& window) { windows.push_back(window); });
     }
@@ -64,7 +66,7 @@ struct ShownPane {
     }
 
     SlicePane pane;
-    std::vector<Vec3> chosen, aimed;
+    std::vector<Vec3> chosen, aimed, dragged;
     std::vector<GreyWindow> windows;
 };
 

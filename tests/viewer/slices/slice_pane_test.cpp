@@ -46,15 +46,17 @@ TEST(SlicePane, as_a_hand_it_aims_the_probe_with_ctrl_only) {
     set(shown.pane, &Shown::probe, true);
     const Vec3 before = shown.pane.shown().crosshair;
     shown.drag(Qt::LeftButton, {150, 150}, {250, 190}, Qt::ControlModifier);
-    ASSERT_EQ(shown.aimed.size(), 2U);
-    EXPECT_LT((shown.aimed[0] - shown.pane.point_at(QPointF(150, 150))).norm(), 1e-9);
-    EXPECT_LT((shown.aimed[1] - shown.pane.point_at(QPointF(250, 190))).norm(), 1e-9);
+    ASSERT_EQ(shown.aimed.size(), 1U);
+    const Vec3 from = shown.pane.point_at(QPointF(150, 150));
+    EXPECT_LT((shown.aimed[0] - from).norm(), 1e-9);
+    ASSERT_EQ(shown.dragged.size(), 1U);
+    EXPECT_LT((from + shown.dragged[0] - shown.pane.point_at(QPointF(250, 190))).norm(), 1e-9);
     EXPECT_EQ(shown.pane.shown().crosshair, before);
     EXPECT_TRUE(shown.chosen.empty());
     shown.drag(Qt::LeftButton, {150, 150}, {250, 190});
     QTest::mouseClick(&shown.pane, Qt::LeftButton, Qt::NoModifier, {200, 180});
     QTest::mouseDClick(&shown.pane, Qt::LeftButton, Qt::ShiftModifier, {200, 180});
-    EXPECT_EQ(shown.aimed.size(), 2U);
+    EXPECT_EQ(shown.aimed.size() + shown.dragged.size(), 2U);
     EXPECT_EQ(shown.chosen.size(), 3U);
 }
 
@@ -67,11 +69,12 @@ TEST(SlicePane, the_probe_stays_in_its_slice_while_it_is_dragged_and_the_wheel_m
     QMouseEvent move(QEvent::MouseMove, QPointF(210, 180), Qt::NoButton, Qt::LeftButton,
                      Qt::NoModifier);
     QApplication::sendEvent(&shown.pane, &move);
-    ASSERT_EQ(shown.aimed.size(), 2U);
-    EXPECT_NEAR(shown.aimed[1][2], 3, 1e-9);
+    ASSERT_EQ(shown.dragged.size(), 1U);
+    EXPECT_NEAR(shown.aimed.at(0)[2], 3, 1e-9);
+    EXPECT_NEAR(shown.dragged[0][2], 0, 1e-9);
     shown.wheel({210, 180}, 120);
-    ASSERT_EQ(shown.aimed.size(), 3U);
-    EXPECT_NEAR(shown.aimed[2][2], 4.5, 1e-9);  // a layer is 1.5 mm
+    ASSERT_EQ(shown.dragged.size(), 2U);
+    EXPECT_NEAR(shown.dragged[1][2], 1.5, 1e-9);  // a layer
     EXPECT_TRUE(shown.chosen.empty());
     QTest::mouseRelease(&shown.pane, Qt::LeftButton, Qt::NoModifier, {210, 180});
 }

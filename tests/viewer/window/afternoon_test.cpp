@@ -113,6 +113,7 @@ void DrawnAfternoon::choose_layers_and_overlay() {
 
 void DrawnAfternoon::record_and_replay() {
     type_in_dialog(Qt::Key_R, scratch("stroke"));
+    wait_until([&] { return window_->recordings().recording(); });
     touch({0, 40});
     Scene& scene = window_->views().scene();
     drag(scene, scene.rect().center() + QPoint(0, 40), scene.rect().center() + QPoint(70, 60));

@@ -100,7 +100,7 @@ TEST_F(DeviceButtons, that_change_end_a_recording_as_another_field_does_and_the_
         SCOPED_TRACE(change);
         const QString name = scratch((std::string(change) + ".csv").c_str());
         type_in_dialog(Qt::Key_R, name);
-        ASSERT_TRUE(window_->recordings().recording());
+        wait_until([&] { return window_->recordings().recording(); });
         wait_until([&] { return window_->live()->recording()->ticks() > 50; });
         choose(change, Qt::Key_Down);
         EXPECT_FALSE(window_->recordings().recording());

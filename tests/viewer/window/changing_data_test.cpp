@@ -87,6 +87,14 @@ TEST_F(ChangingData, a_brush_that_is_on_is_seen_over_the_scene_on_every_page) {
         tabs.setCurrentIndex(page);
         wait_until([&] { return words.isVisible(); });
     }
+    press(Qt::Key_F8);
+    const QWidget& alone = *window_->views().alone();
+    wait_until([&] { return alone.isVisible() && words.isVisible(); });
+    EXPECT_EQ(words.parentWidget(), &alone);
+    EXPECT_TRUE(alone.rect().contains(words.geometry()));
+    press(Qt::Key_F5);
+    wait_until([&] { return !alone.isVisible() || words.parentWidget() != &alone; });
+    wait_until([&] { return words.isVisible(); });
     press(Qt::Key_B);
     wait_until([&] { return !words.isVisible(); });
 }
@@ -214,7 +222,7 @@ TEST_F(ChangingData, a_signal_ends_it_without_a_question_and_rescues_the_edits) 
 
 TEST_F(ChangingData, a_recording_of_edits_is_played_with_them) {
     feel("synthetic:sphere:48x48x48");
-    window_->recordings().start(scratch("carving.csv"));
+    record("carving.csv");
     carve();
     const auto carved = work().samples;
     wait_until([&] { return now().session.version == work().version; });  // it is recorded, then

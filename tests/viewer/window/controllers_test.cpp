@@ -114,7 +114,7 @@ TEST_F(Controllers, a_recording_ends_when_another_volume_is_opened_and_is_played
     EXPECT_TRUE(timeline.isHidden());
     const auto file = scratch.path() / "a.csv";
     recordings.start(QString::fromStdString(file.string()));
-    ASSERT_TRUE(recordings.recording());
+    wait_until([&] { return recordings.recording(); });
     wait_until([&] { return content.live()->recording()->ticks() > 200; });
     const auto volume = content.volume();
     feel("synthetic:torus:24x24x12");

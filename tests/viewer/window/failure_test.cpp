@@ -1,11 +1,16 @@
 // Failures: what is told, and what stays as it was.
+#include <sys/stat.h>
 #include <QAction>
 #include <QMenu>
 #include <QMessageBox>
 #include <QPalette>
+#include <QPushButton>
 #include <QToolBar>
 #include <QToolButton>
+#include <algorithm>
 #include <fstream>
+#include <iterator>
+#include <thread>
 
 #include "apps/viewer/window/preferences.hpp"
 #include "devices/claim.hpp"
@@ -20,7 +25,7 @@ constexpr const char* sphere = "synthetic:sphere:40x40x40";
 
 TEST_F(Failures, an_unavailable_device_is_reported_wherever_it_is_requested) {
     feel(sphere);
-    window_->recordings().start(scratch("a.csv"));
+    record("a.csv");
     wait_until([&] { return window_->live()->recording()->ticks() > 50; });
     window_->recordings().stop();
     window_.reset();
@@ -80,7 +85,7 @@ TEST_F(Failures, leaving_a_recording_keeps_level_and_view) {
     feel(sphere);
     window_->content().effect().request(command::Isovalue{110});
     wait_until([&] { return now().session.tick.proxy.isovalue == 110; });
-    window_->recordings().start(scratch("a.csv"));
+    record("a.csv");
     wait_until([&] { return window_->live()->recording()->ticks() > 50; });
     window_->recordings().stop();
     window_->files().open_path(scratch("a.csv"));
@@ -110,7 +115,7 @@ TEST_F(Failures, a_recording_that_cannot_be_begun_leaves_the_session_as_it_was) 
     feel(sphere);
     std::ofstream(scratch_.path() / "there.csv") << "mine";
     const std::int64_t before = now().number;
-    window_->recordings().start(scratch("there.csv"));
+    record("there.csv");
     EXPECT_TRUE(window_->messages().problem().contains("there.csv"));
     EXPECT_EQ(window_->messages().problem_status(), 5);
     EXPECT_EQ(window_->live()->recording(), nullptr);
@@ -121,9 +126,35 @@ TEST_F(Failures, a_recording_that_cannot_be_begun_leaves_the_session_as_it_was) 
     EXPECT_EQ(text, "mine");
 }
 
+TEST_F(Failures, a_pipe_without_a_reader_holds_up_neither_the_window_nor_the_recording_to_come) {
+    feel(sphere);
+    const std::string pipe = scratch("pipe.csv").toStdString();
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    window_->recordings().start(scratch("pipe.csv"));
+    wait_for_ticks(50);
+    EXPECT_FALSE(window_->settled());
+    QWidget* shown = late_strip();
+    ASSERT_NE(shown, nullptr);
+    QTest::mouseClick(shown->findChild<QPushButton*>("cancel"), Qt::LeftButton);
+    wait_until([&] { return window_->recordings().settled(); });
+    EXPECT_FALSE(window_->recordings().recording());
+    window_->recordings().start(scratch("pipe.csv"));
+    std::string text;
+    std::jthread reader([&] {
+        std::ifstream in(pipe);
+        text.assign(std::istreambuf_iterator<char>(in), {});
+    });
+    wait_until([&] { return window_->recordings().recording(); });
+    wait_until([&] { return window_->live()->recording()->ticks() > 50; });
+    window_->recordings().stop();
+    reader.join();
+    EXPECT_GT(std::ranges::count(text, '\n'), 50);
+    EXPECT_EQ(window_->messages().problem(), "");
+}
+
 TEST_F(Failures, opening_what_is_open_gives_up_what_is_being_loaded) {
     feel(sphere);
-    window_->recordings().start(scratch("a.csv"));
+    record("a.csv");
     wait_until([&] { return window_->live()->recording()->ticks() > 50; });
     window_->recordings().stop();
     window_->files().open_volume(run::source_named("synthetic:noise:200x200x200"));

@@ -151,23 +151,6 @@ TEST_F(Window, a_click_touches_the_surface_there_and_a_held_button_presses_deepe
     EXPECT_GT(force(), 0.1) << "nor lets go";
 }
 
-TEST_F(Window, a_double_click_on_the_scene_moves_no_hand) {
-    feel(large_sphere);
-    QApplication::setDoubleClickInterval(100);
-    Scene& scene = window_->views().scene();
-    const Vec3 before = window_->live()->mouse()->aimed();
-    const QPoint at = scene.rect().center() + QPoint(40, 30);
-    QTest::mouseClick(&scene, Qt::LeftButton, {}, at);
-    QTest::mouseDClick(&scene, Qt::LeftButton, {}, at);
-    EXPECT_EQ(window_->views().alone(), &scene);
-    QElapsedTimer since;
-    since.start();
-    wait_until([&] { return since.elapsed() > 3 * QApplication::doubleClickInterval(); });
-    EXPECT_EQ(window_->live()->mouse()->aimed(), before);
-    QTest::mouseClick(&scene, Qt::LeftButton, {}, at);
-    wait_until([&] { return window_->live()->mouse()->aimed() != before; });
-}
-
 TEST_F(Window, a_click_frees_a_probe_that_is_caught_in_a_closed_shell) {
     feel("synthetic:shell:48x48x48");
     const double level = window_->live()->isovalue();
@@ -332,7 +315,7 @@ TEST_F(Window, a_session_is_recorded_and_played_back_with_the_timeline) {
     QElapsedTimer since_before;
     since_before.start();
     type_in_dialog(Qt::Key_R, scratch("session"));  // the dialog adds the extension
-    ASSERT_NE(window_->live()->recording(), nullptr);
+    wait_until([&] { return window_->recordings().recording(); });
     press_until_force();
     const auto clock_s = [&] {
         const auto& clock = part<QLabel>("recording_clock");

@@ -14,6 +14,7 @@
 
 #include "apps/options/view_options.hpp"
 #include "apps/viewer/panel/inputs.hpp"
+#include "apps/viewer/window/file_dialogs.hpp"
 #include "apps/viewer/window/screenshot.hpp"
 #include "apps/viewer/window/tool_controls.hpp"
 #include "io/volume_dicom_slice.hpp"
@@ -413,6 +414,17 @@ TEST_F(Files, screenshot_of_what_cannot_be_opened_ends_with_its_status) {
     EXPECT_FALSE(QFile::exists(scratch("shot.png")));
 }
 
+TEST_F(Files, that_are_opened_for_a_picture_are_not_those_of_the_next_start) {
+    const auto ball = run::load(run::source_named("synthetic:sphere:16x16x16")).volume;
+    io::write_volume(ball, scratch_.path() / "a.nrrd");
+    for (const bool nothing : {true, false}) {
+        remember_nothing(nothing);
+        feel((scratch_.path() / "a.nrrd").string());
+        EXPECT_EQ(QSettings().contains("recent"), !nothing);
+        EXPECT_EQ(QSettings().contains("folder"), !nothing);
+    }
+}
+
 TEST_F(Files, a_slice_moves_the_hand_with_ctrl_only) {
     feel("synthetic:sphere:48x48x48");
     SlicePane& axial = window_->views().slice(2);
@@ -422,6 +434,7 @@ TEST_F(Files, a_slice_moves_the_hand_with_ctrl_only) {
     QTest::mouseDClick(&axial, Qt::LeftButton, {}, at);
     EXPECT_EQ(window_->live()->mouse()->aimed(), before);
     const Vec3 wanted = axial.point_at(at);
+    QTest::lastMouseTimestamp += 1000;  // it is no third click
     QTest::mouseClick(&axial, Qt::LeftButton, Qt::ControlModifier, at);
     wait_until([&] { return (now().session.tick.proxy.hip - wanted).norm() < 0.1; });
 }

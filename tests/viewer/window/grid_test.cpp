@@ -29,6 +29,13 @@ class Grid : public InWindow {
         out.write(static_cast<const char*>(ball.data()), std::streamsize(ball.bytes()));
         ASSERT_EQ(ball.geometry().size, size);
     }
+    /// On the same grid: a label on one side.
+    void put_labels(const char* name, const char* fields) {
+        std::ofstream out(scratch_.path() / name, std::ios::binary);
+        out << "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 20 24 28\nencoding: raw\n"
+            << fields << "\n";
+        for (int i = 0; i < 20 * 24 * 28; ++i) out.put(i % 20 < 8 ? '\1' : '\0');
+    }
     QStringList titles() {
         QStringList all;
         for (const int axis : {2, 1, 0}) all << window_->views().slice(axis).title();
@@ -76,6 +83,54 @@ TEST_F(Grid, that_is_not_oriented_is_shown_with_neutral_names_until_it_is_assign
     wait_until([&] { return window_->live() && grid().size[1] == 24 && window_->settled(); });
     EXPECT_EQ(io::orientation_of(grid()), "LIA");
     EXPECT_TRUE(grid().oriented);
+}
+
+TEST_F(Grid, that_is_assigned_takes_its_labels_along) {
+    write("a.nrrd", "spacings: 1 1 2\n");
+    feel(scratch("a.nrrd").toStdString());
+    put_labels("l.nrrd", "spacings: 1 1 2\n");
+    auto& overlays = window_->panel().overlay_controls();
+    overlays.open(run::source_named(scratch("l.nrrd").toStdString()));
+    wait_until([&] { return overlays.overlay() != nullptr; });
+    wait_until_settled();
+    QTest::mouseClick(&on_page<QPushButton>("feel_labels"), Qt::LeftButton);
+    wait_until([&] { return window_->live()->settings().layers != nullptr; });
+    QTest::mouseClick(&badge(), Qt::LeftButton);
+    for (const auto& [axis, times] : {std::pair("X", 2), std::pair("Y", 6), std::pair("Z", 4)}) {
+        auto& box = part<QComboBox>((std::string("grid_side_") + axis).c_str());
+        box.setFocus();
+        for (int i = 0; i < times; ++i) QTest::keyClick(&box, Qt::Key_Down);
+    }
+    QTest::keyClick(&part<QDialog>("grid"), Qt::Key_Return);
+    wait_until([&] {
+        const run::Run* live = window_->live();
+        return live && grid().oriented && live->settings().layers && overlays.overlay() &&
+               window_->settled();
+    });
+    EXPECT_EQ(io::orientation_of(grid()), "RIA");
+    EXPECT_EQ(overlays.overlay()->volume.geometry(), grid());
+    EXPECT_EQ(window_->live()->settings().layers->labels->geometry(), grid());
+    EXPECT_EQ(overlays.warning(), "");
+    EXPECT_FALSE(badge().isVisible());
+}
+
+TEST_F(Grid, that_only_the_volume_or_the_overlay_has_is_told) {
+    write("d.nrrd",
+          "space: RAS\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nkinds: space space space\n");
+    feel(scratch("d.nrrd").toStdString());
+    put_labels("l.nrrd", "spacings: 1 1 1\n");
+    auto& overlays = window_->panel().overlay_controls();
+    overlays.open(run::source_named(scratch("l.nrrd").toStdString()));
+    wait_until([&] { return overlays.overlay() != nullptr; });
+    wait_until_settled();
+    EXPECT_EQ(badge().text(), "The overlay may lie elsewhere");
+    EXPECT_TRUE(badge().toolTip().contains("l.nrrd does not give its orientation"));
+    part<QTabWidget>("tabs").setCurrentIndex(0);
+    QTest::mouseClick(&badge(), Qt::LeftButton);
+    wait_until([&] { return part<QLabel>("overlay_beside").isVisible(); });
+    EXPECT_EQ(part<QLabel>("overlay_beside").text(), badge().toolTip());
+    overlays.close_overlay();
+    EXPECT_FALSE(badge().isVisible());
 }
 
 TEST_F(Grid, without_a_spacing_says_so_and_takes_one) {

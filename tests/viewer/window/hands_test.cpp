@@ -115,7 +115,7 @@ TEST_F(TwoHands, one_whose_device_fails_ends_alone_and_the_window_says_which) {
 
 TEST_F(TwoHands, one_recording_has_both_and_is_played_with_both) {
     feel_with_two();
-    window_->recordings().start(scratch("both.csv"));
+    record("both.csv");
     ASSERT_TRUE(window_->recordings().recording());
     for (const int hand : {1, 2}) {
         wait_until([&] { return content().live(hand)->recording()->ticks(hand) > 600; });
@@ -160,7 +160,7 @@ TEST_F(TwoHands, feel_their_own_layers_again_after_a_recording) {
         content().effect().request(
             command::UseLayers{std::make_shared<const Layers>(std::move(layers))});
     }
-    window_->recordings().start(scratch("layers.csv"));
+    record("layers.csv");
     for (const int hand : {1, 2}) {
         wait_until([&] { return content().live(hand)->recording()->ticks(hand) > 100; });
     }

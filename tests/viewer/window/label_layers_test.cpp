@@ -188,7 +188,7 @@ TEST_F(LabelsInWindow, a_recording_is_played_with_them) {
     feel("synthetic:sphere:48x48x48");
     feel_labels();
     const double level = window_->live()->isovalue();
-    window_->recordings().start(scratch("a.csv"));
+    record("a.csv");
     EXPECT_EQ(window_->live()->isovalue(), level);
     ASSERT_TRUE(press_until_on("shell"));
     window_->recordings().stop();

@@ -203,7 +203,7 @@ TEST_F(LayersInWindow, a_recording_names_the_layers_that_were_felt) {
     feel_ct();
     pick(ct_set);
     wait_until_settled();
-    window_->recordings().start(scratch("a.csv"));
+    record("a.csv");
     ASSERT_TRUE(press_until([&] { return now().session.tick.layers.touched == 0; }, finely));
     window_->recordings().stop();
     window_->files().open_path(scratch("a.csv"));
@@ -228,6 +228,14 @@ TEST_F(LayersInWindow, of_the_command_line_are_for_the_first_volume) {
     EXPECT_EQ(part<QComboBox>("layers").currentText(), ct_set);
     feel("synthetic:sphere:48x48x48");
     wait_until([&] { return window_->live() && !layers(); });
+}
+
+TEST_F(LayersInWindow, for_ct_are_not_offered_for_data_that_look_like_none) {
+    feel("synthetic:sphere:48x48x48");
+    const auto& box = part<QComboBox>("layers");
+    const int row = box.findText(ct_set);
+    EXPECT_FALSE(box.model()->index(row, 0).flags() & Qt::ItemIsEnabled);
+    EXPECT_TRUE(box.itemData(row, Qt::ToolTipRole).toString().contains("Hounsfield"));
 }
 
 TEST_F(LayersInWindow, sets_that_do_not_suit_the_solid_side_cannot_be_picked) {

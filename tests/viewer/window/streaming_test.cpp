@@ -192,7 +192,7 @@ TEST_F(StreamingEdits, that_were_not_saved_are_rescued_when_a_signal_ends_the_wi
 TEST_F(StreamingEdits, by_hand_are_recorded_and_played) {
     ring();
     open("ring.zarr");
-    window_->recordings().start(scratch("carving.csv"));
+    record("carving.csv");
     QTest::mouseClick(&scene(), Qt::LeftButton, {}, QPoint(180, 400));
     wait_until([&] { return !window_->probe().travelling(); });
     press_until_force();

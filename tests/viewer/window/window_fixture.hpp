@@ -121,6 +121,11 @@ class InWindow : public testing::Test {
         wait_until(is_settled);
     }
 
+    /// Records from now on.
+    void record(const char* name) {
+        window_->recordings().start(scratch(name));
+        viewer::wait_until([this] { return window_->recordings().settled(); });
+    }
     /// Opens a volume and waits until it is felt.
     void feel(const std::string& name) {
         window_->files().open_path(QString::fromStdString(name));
@@ -191,14 +196,11 @@ class InWindow : public testing::Test {
         ASSERT_TRUE(press_until([&] { return force() > 0.3; }));
     }
 
-    /// A widget of the panel, with its page in front, as a person would open it.
+    /// A widget of the panel, with its page in front and its section open.
     template <class Widget>
     Widget& on_page(const char* name) {
         auto& widget = part<Widget>(name);
-        auto& tabs = part<QTabWidget>("tabs");
-        for (int i = 0; i < tabs.count(); ++i) {
-            if (tabs.widget(i)->isAncestorOf(&widget)) tabs.setCurrentIndex(i);
-        }
+        window_->panel().show_section(widget);
         QApplication::processEvents();
         return widget;
     }
@@ -242,6 +244,16 @@ class InWindow : public testing::Test {
             if (one->isVisible()) return one;
         }
         return nullptr;
+    }
+    /// The same when a task has taken so long that its strip is due.
+    QWidget* late_strip() {
+        for (auto* one : window_->findChildren<QWidget*>("progress")) {
+            for (auto* late : one->findChildren<QTimer*>()) {
+                QTimerEvent due(late->timerId());
+                if (late->isActive()) QApplication::sendEvent(late, &due);
+            }
+        }
+        return strip();
     }
     /// Presses the button that cancels a task, once it is there.
     void cancel_task() {

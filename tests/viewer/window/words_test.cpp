@@ -1,0 +1,108 @@
+// Words and numbers of the window: their promises, their form, and their places.
+#include <QAction>
+#include <QFileDialog>
+#include <QLabel>
+#include <QTextBrowser>
+
+#include "apps/viewer/model/ruler.hpp"
+#include "viewer/window/window_fixture.hpp"
+
+namespace palpate::viewer::test {
+namespace {
+
+using WordsInWindow = InWindow;
+
+TEST_F(WordsInWindow, of_the_first_steps_promise_nothing_that_is_switched_off) {
+    for (const auto* label : part<QWidget>("welcome").findChildren<QLabel*>()) {
+        EXPECT_FALSE(label->text().contains("press harder")) << label->text().toStdString();
+    }
+    part<QAction>("first_steps_action").trigger();
+    const QString text = part<QDialog>("first_steps").findChild<QTextBrowser*>()->toPlainText();
+    const int through = text.indexOf("press harder");
+    ASSERT_GE(through, 0);
+    EXPECT_EQ(text.lastIndexOf("switch on Surfaces give way", through), through - 29)
+        << text.mid(through - 60, 90).toStdString();
+    feel("synthetic:sphere:24x24x24");
+    EXPECT_FALSE(part<QAbstractButton>("penetrability").isChecked());
+}
+
+TEST_F(WordsInWindow, over_a_recording_tell_how_to_leave_it) {
+    feel("synthetic:sphere:24x24x24");
+    record("a.csv");
+    wait_for_ticks(20);
+    window_->recordings().stop();
+    window_->files().open_path(scratch("a.csv"));
+    wait_until([&] { return window_->playback() != nullptr; });
+    auto& hint = part<QLabel>("hint");
+    wait_until([&] { return hint.isVisible() && hint.text().contains("Esc leaves it"); });
+    press(Qt::Key_F8);
+    wait_until([&] { return hint.isVisible() && hint.parentWidget() != &window_->views().scene(); });
+    press(Qt::Key_Escape);
+    wait_until([&] { return window_->live() && !(hint.isVisible() && hint.text().contains("Esc")); });
+}
+
+TEST_F(WordsInWindow, suggest_the_name_of_the_volume_for_its_surface) {
+    const Volume ball = run::load(run::source_named("synthetic:sphere:16x16x16")).volume;
+    for (const char* name : {"iguana.nii", "iguana.nii.gz", "iguana.nrrd"}) {
+        io::write_volume(ball, scratch_.path() / name);
+        feel(scratch(name).toStdString());
+        QString suggested;
+        QTimer person;
+        QObject::connect(&person, &QTimer::timeout, [&] {
+            QWidget* dialog = QApplication::activeModalWidget();
+            auto* line = dialog ? dialog->findChild<QLineEdit*>("fileNameEdit") : nullptr;
+            if (!line || !line->isVisible()) return;
+            suggested = line->text();
+            QTest::keyClick(line, Qt::Key_Escape);
+        });
+        person.start(10);
+        window_->saver().ask_save_surface();
+        person.stop();
+        EXPECT_EQ(suggested, "iguana.ply") << name;
+    }
+}
+
+TEST(RulerWords, have_no_exponents) {
+    for (const double spacing : {1e-3, 0.5, 2.0}) {
+        Geometry geometry;
+        geometry.spacing.setConstant(spacing);
+        for (const double mm : {0.0004, 0.13, 1.3, 130.0, 2696.5}) {
+            const std::string text = ruler_of(geometry).number(mm);
+            EXPECT_EQ(text.find('e'), std::string::npos) << text;
+        }
+    }
+}
+
+using DrawnWords = WordsInWindow;
+
+/// With the fonts of a display: without one they are larger.
+TEST_F(DrawnWords, leave_three_quarters_of_a_common_window_to_the_picture) {
+    feel("synthetic:sphere:24x24x24");
+    window_->resize(1400, 900);
+    wait_until_quiet(*window_);
+    auto& tabs = part<QTabWidget>("tabs");
+    for (int page = 0; page < tabs.count(); ++page) {
+        tabs.setCurrentIndex(page);
+        wait_until_quiet(*window_);
+        EXPECT_LE(4 * part<QWidget>("dock").width(), window_->width()) << page;
+    }
+}
+
+TEST_F(WordsInWindow, stay_in_their_place_when_the_hand_touches) {
+    feel("synthetic:sphere:48x48x48");
+    const auto places = [&] {
+        std::vector<QRect> all;
+        for (const char* name : {"session_part", "isovalue_part", "tabs", "force_bar"}) {
+            auto& widget = part<QWidget>(name);
+            all.emplace_back(widget.mapTo(window_.get(), QPoint()), widget.size());
+        }
+        return all;
+    };
+    const auto before = places();
+    press_until_force();
+    wait_until([&] { return part<QLabel>("contact").text().startsWith("In contact"); });
+    EXPECT_EQ(places(), before);
+}
+
+}  // namespace
+}  // namespace palpate::viewer::test
