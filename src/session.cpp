@@ -83,6 +83,15 @@ void change_data(Renderer& renderer, Change&& change) noexcept {
     if (covered && are_felt) change(*covered);
 }
 
+/// A sequence that passes a frame in fewer ticks jumps. Otherwise its surfaces move, and push the
+/// hand as they do.
+constexpr double fewest_ticks_of_frame = 10;
+
+/// The place of a moment among the frames.
+double frame_at(const Moment& moment) {
+    return static_cast<double>(moment.from) + moment.weight;
+}
+
 /// Moves a playing sequence on with the time of the ticks, within its frames.
 void play(Session& session, double time) {
     if (!std::isfinite(time)) return;
@@ -90,8 +99,10 @@ void play(Session& session, double time) {
     const double dt = session.past.begun ? time - session.past.last_tick : 0;
     if (session.speed != 0 && dt > 0) {
         const double to = field.samples().within(field.time() + session.speed * dt);
+        const double before = frame_at(field.moment());
         change_data(session.renderer, [to](Field& changed) { changed.set_time(to); });
-        session.renderer.force.changed = true;
+        const double passed = std::abs(frame_at(field.moment()) - before);
+        session.renderer.force.changed |= passed * fewest_ticks_of_frame > 1;
     }
     session.past.begun = true;
     session.past.last_tick = time;

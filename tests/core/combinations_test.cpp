@@ -100,6 +100,7 @@ class Judge {
         ToolProxy& proxy = *renderer().tool_proxy;
         const ToolState before = proxy;
         const Tick tick = render(renderer(), state, {}, nullptr, of_tool_.observer());
+        EXPECT_LE(tick.proxy.work, 2 * renderer().settings.proxy.step_budget) << "T5";
         ToolUpdate r;
         r.status = tick.proxy.status;
         r.mode = tick.proxy.mode;

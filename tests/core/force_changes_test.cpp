@@ -186,6 +186,25 @@ std::string name_of_case(const testing::TestParamInfo<Case>& info) {
 }
 INSTANTIATE_TEST_SUITE_P(Every, ForceChanges, testing::ValuesIn(all_cases()), name_of_case);
 
+/// 100 mm/s, which is faster than the ramp.
+TEST(ForceChanges, a_surface_that_moves_in_a_sequence_pushes_as_it_moves) {
+    const auto frames = std::make_shared<const Samples>(
+        std::vector<Frame>{{0, slope(0)}, {0.1, slope(10)}, {0.2, slope(20)}});
+    Session session{make_renderer(Field(frames, Solid::above, -1000), level, {}), {}};
+    const DeviceReading reading = ready_at({24.2, 12.1, 42});
+    double time = 0;
+    stand(session, time, reading, 400, [](auto&) {});
+    palpate::apply(session, command::Speed{1});
+    double most = 0;
+    stand(session, time, reading, 190, [&](const Tick& tick) {
+        const Vec3 pull = tick.proxy.scp - tick.proxy.hip;
+        ASSERT_EQ(tick.force, Vec3(0.5 * pull));
+        ASSERT_EQ(tick.force_flags, 0);
+        most = tick.force.norm();
+    });
+    EXPECT_GT(most, 0.3);
+}
+
 /// Every few ticks, as a window, a brush or a store sends them.
 TEST(ForceChanges, commands_that_change_nothing_are_not_felt) {
     int contacts = 0;
