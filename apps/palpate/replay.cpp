@@ -35,66 +35,36 @@ struct ReplayOptions {
     std::string recorded_volume;
 };
 
-/// Other reasons why a tick may differ; reads on to the end of the recording.
-std::string excuses(io::RecordingReader& reader) {
-    std::string words;
-    if (reader.head().version != PALPATE_VERSION) {
-        words +=
-            " (recorded with version " + reader.head().version + ", this is " PALPATE_VERSION ")";
-    }
-    while (reader.next()) {
-    }
-    if (reader.lost() > 0) {
-        words += fmt::format(" (the recording lost {} events while it was made)", reader.lost());
-    }
-    return words;
-}
-
-/// Renders every tick of a hand again and compares it bit for bit, update times excepted; an
-/// io::InputError tells the first difference. `hand`: words for it, empty for the only one.
-void validate(io::RecordingReader& reader, const run::LoadedVolume& loaded,
-              const std::string& recording, const std::string& hand, bool quiet) {
-    run::Replay replay(reader, loaded, recording, [] { stop_if_interrupted(); });
-    ProgressBar bar("validating", quiet);
-    while (const auto tick = replay.next()) {
-        if (const auto differs = run::difference(tick->recorded, tick->again)) {
-            throw io::InputError(
-                fmt::format("{}: {}tick {} (line {}, {} s) differs: {}: recorded {}, "
-                            "now {}{}",
-                            recording, hand, tick->number, reader.line(), tick->recorded.tick.time,
-                            differs->part, differs->recorded, differs->again, excuses(reader)));
-        }
-        if (replay.ticks() % 1024 == 0) bar.at(reader.progress());
-    }
-    if (quiet) return;
+void print_hand(const run::ValidatedHand& hand, const std::string& recording) {
     fmt::print("{}: {}{} ticks and {} commands, rendered again, are the same bit for bit\n",
-               recording, hand, replay.ticks(), replay.commands());
-    if (reader.lost() > 0) {
-        fmt::print("the recording lost {} events while it was made\n", reader.lost());
+               recording, hand.words, hand.ticks, hand.commands);
+    if (hand.lost > 0) {
+        fmt::print("the recording lost {} events while it was made\n", hand.lost);
     }
-    if (!reader.complete()) {
+    if (!hand.complete) {
         fmt::print("the recording was cut off before its end: the ticks after {} are missing\n",
-                   replay.ticks() - 1);
+                   hand.ticks - 1);
     }
-    if (!reader.has_checksums()) {
+    if (!hand.has_checksums) {
         fmt::print(
             "an earlier version made it, without checksums: whether something was removed from it "
             "cannot be known\n");
     }
 }
 
-/// All hands of a recording. `volume` is used instead of the name in the recording where it is not
-/// empty.
+/// `volume` is used instead of the name in the recording where it is not empty.
 void validate(const std::string& recording, const std::string& volume, bool quiet) {
     const std::string text = io::read_text(recording, stop_if_interrupted);
-    io::RecordingReader first(text, recording);
+    const io::RecordingReader reader(text, recording);
     const run::LoadedVolume loaded =
-        load_for_terminal(run::recorded_source(first.head(), recording, volume), quiet);
-    validate(first, loaded, recording, first.hands() > 1 ? "hand 1, " : "", quiet);
-    for (int hand = 2; hand <= first.hands(); ++hand) {
-        io::RecordingReader reader(text, recording, hand);
-        validate(reader, loaded, recording, fmt::format("hand {}, ", hand), quiet);
+        load_for_terminal(run::recorded_source(reader.head(), recording, volume), quiet);
+    std::vector<run::ValidatedHand> hands;
+    {
+        ProgressBar bar("validating", quiet);
+        hands = run::validate(text, recording, loaded, [&](double part) { bar.at(part); });
     }
+    if (quiet) return;
+    for (const run::ValidatedHand& hand : hands) print_hand(hand, recording);
 }
 
 /// A recording contains its own settings.

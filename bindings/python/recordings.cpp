@@ -52,50 +52,23 @@ py::tuple read(const fs::path& path, int hand) {
                           reader->hands());
 }
 
-/// Throws io::InputError for the first tick that differs.
-void compare(const run::Replay::Tick& tick, const std::string& recording) {
-    const auto differs = run::difference(tick.recorded, tick.again);
-    if (!differs) return;
-    throw io::InputError(recording + ": tick " + std::to_string(tick.number) +
-                         " differs: " + differs->part + ": recorded " + differs->recorded +
-                         ", now " + differs->again);
-}
-
-/// Counts of the rendered ticks of all hands.
-struct Counted {
-    std::int64_t ticks = 0, commands = 0;
-};
-
-void validate_hand(io::RecordingReader& reader, const run::LoadedVolume& loaded,
-                   const std::string& recording, const io::Progress& tell, Counted& counted) {
-    constexpr std::int64_t ticks_between_progress = 1024;
-    run::Replay replay(reader, loaded, recording, [&] { tell(reader.progress()); });
-    while (const auto tick = replay.next()) {
-        compare(*tick, recording);
-        if (tick->number % ticks_between_progress == 0) tell(reader.progress());
-    }
-    counted.ticks += replay.ticks();
-    counted.commands += replay.commands();
-}
-
 py::dict validate(const fs::path& path, const fs::path& volume, const ProgressFunction& progress) {
     const auto tell = progress_of(progress);
-    Counted counted;
-    std::optional<io::RecordingReader> reader;
-    {
-        const GilReleased unlocked;
+    const auto hands = without_gil([&] {
         const std::string text = io::read_text(path, tell);
-        reader.emplace(text, path.string());
+        const io::RecordingReader reader(text, path.string());
         const run::LoadedVolume loaded =
-            run::load(run::recorded_source(reader->head(), path, volume.string()), tell);
-        validate_hand(*reader, loaded, path.string(), tell, counted);
-        for (int hand = 2; hand <= reader->hands(); ++hand) {
-            io::RecordingReader other(text, path.string(), hand);
-            validate_hand(other, loaded, path.string(), tell, counted);
-        }
+            run::load(run::recorded_source(reader.head(), path, volume.string()), tell);
+        return run::validate(text, path.string(), loaded, tell);
+    });
+    std::int64_t ticks = 0, commands = 0;
+    for (const run::ValidatedHand& hand : hands) {
+        ticks += hand.ticks;
+        commands += hand.commands;
     }
-    return py::dict(py::arg("ticks") = counted.ticks, py::arg("commands") = counted.commands,
-                    py::arg("complete") = reader->complete(), py::arg("lost") = reader->lost());
+    return py::dict(py::arg("ticks") = ticks, py::arg("commands") = commands,
+                    py::arg("complete") = hands.front().complete,
+                    py::arg("lost") = hands.front().lost);
 }
 
 }  // namespace

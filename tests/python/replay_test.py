@@ -272,3 +272,15 @@ def test_a_trace_is_drawn_into_two_axes():
         assert numpy.array_equal(time_drawn, trace.t)
         assert numpy.array_equal(drawn, numpy.linalg.norm(values, axis=1)) and drawn.max() > 0.5
         assert axes.shaded.sum() > 100 and numpy.array_equal(axes.shaded, trace.constrained)
+
+
+def test_a_tick_that_differs_is_told_as_on_the_command_line(tmp_path):
+    path = tmp_path / "run.csv"
+    hand = ["touch", "synthetic:sphere:16x16x16", "--unpaced", "--device", "simulated:hand=press", "--seconds", "0.6"]
+    subprocess.run([PALPATE, *hand, "--record", path, "-q"], check=True)
+    assert palpate.validate(path)["ticks"] > 500
+    path.write_text(path.read_text().replace('"stiffness": 0.5', '"stiffness": 0.6', 1))
+    told = subprocess.run([PALPATE, "replay", path, "--validate"], stderr=subprocess.PIPE, text=True, check=False).stderr
+    with pytest.raises(palpate.InputError, match=r"run.csv: tick \d+ \(line \d+, [\d.]+ s\) differs: force: recorded") as raised:
+        palpate.validate(path)
+    assert told == f"palpate: {raised.value}\n"

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "palpate/io/recording.hpp"
 #include "palpate/progress.hpp"
@@ -67,5 +68,20 @@ class Replay {
     RecordedSamples samples_;
     std::int64_t ticks_ = 0, commands_ = 0;
 };
+
+/// A hand of a recording that was rendered again, with the same result.
+struct ValidatedHand {
+    std::string words;  ///< "hand 1, ", or empty for the only one
+    std::int64_t ticks, commands;
+    std::int64_t lost;   ///< events that the recording lost while it was made
+    bool complete;       ///< false: it was cut off before its end
+    bool has_checksums;  ///< false: an earlier version made it
+};
+/// Renders every tick of all hands of a recording again and compares it bit for bit, except for the
+/// times of updates. `text` is its content, `recording` its name, `loaded` the volume of
+/// recorded_source(). Throws io::InputError that names the first difference, and as Replay does.
+/// `progress` may throw to stop.
+std::vector<ValidatedHand> validate(const std::string& text, const std::string& recording,
+                                    const LoadedVolume& loaded, const OnProgress& progress = {});
 
 }  // namespace palpate::run

@@ -111,7 +111,8 @@ static class FeelsABall
             Native.Check(Native.palpate_run_get(run, name, out before));
             if (before == 0 && name.StartsWith("limits.")) continue; // a limit cannot be raised
             double small = name.EndsWith("distance") ? 1 : 1e-4; // the pull of a magnet is bounded over it
-            double wanted = double.IsInfinity(before) ? 7 : before == 0 ? small : 0.9 * before;
+            double factor = name == "limits.delay" ? 1.1 : 0.9; // a delay can only be raised
+            double wanted = double.IsInfinity(before) ? 7 : before == 0 ? small : factor * before;
             Native.Check(Native.palpate_run_set(run, name, wanted));
             Native.Check(Native.palpate_run_get(run, name, out after));
             Require(after == wanted && after != before, name);

@@ -113,7 +113,7 @@ def main():
         return 0
 
     own = sized(OwnDevice)
-    own.name, own.maximum_force, own.rate = b"python", 2, 200
+    own.name, own.maximum_force, own.rate = b"python", 2, 500
     own.read, own.write, own.close = READ(read), WRITE(write), CLOSE(lambda _: closed.append(1))
     render = sized(RenderOptions)
     render.has_isovalue, render.isovalue, render.scale, render.stiffness = 1, 100, 1, 0.4
