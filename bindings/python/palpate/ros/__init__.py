@@ -20,6 +20,7 @@ from . import node
 
 MM = 1000  # of a metre; N mm of a newton metre
 DELAY = 0.002  # [s] that the way through ROS adds (docs/ros.md)
+EXCHANGE = 0.0021  # [s] that a Run adds, which asks the device 1000 times per second (docs/servo.md)
 POSE_RATE = 150  # [Hz], the smallest that counts as a pose that is measured again and again
 POSES = 32  # whose mean rate is taken
 LEVELS = {"ready": 0, "finished": 0, "starting": 1, "uncalibrated": 1, "lost": 2, "fault": 2, "stale": 3}
@@ -151,7 +152,7 @@ class Arm:
         self._info.buttons = 32
         limits = self._info.limits
         limits.delay += DELAY + 0.5 / pose_rate  # a pose that is held acts like a tick of that length
-        stable = limits.physical_damping / (0.5 / limits.rate + limits.delay)  # docs/force.md
+        stable = limits.physical_damping / (0.5 / limits.rate + limits.delay + EXCHANGE)  # docs/force.md
         self._info.stiffness = min(self._info.stiffness, 0.999 * stable)
         self._newest: tuple[Any, ...] = ()
         self._arrivals: collections.deque[float] = collections.deque(maxlen=POSES)
