@@ -35,8 +35,7 @@ class Clicks : public InWindow {
         send(QEvent::MouseButtonRelease, pane, at + QPoint(motion, 0), time + 40);
     }
     void click_with_ctrl(SlicePane& pane, const Vec3& to) {
-        QTest::mouseClick(&pane, Qt::LeftButton, Qt::ControlModifier,
-                          pane.pixel_of(to).toPoint());
+        QTest::mouseClick(&pane, Qt::LeftButton, Qt::ControlModifier, pane.pixel_of(to).toPoint());
         wait_until([&] { return !window_->probe().travelling(); });
         wait_for_hand();
         wait_for_ticks(4);

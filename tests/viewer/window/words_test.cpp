@@ -36,9 +36,11 @@ TEST_F(WordsInWindow, over_a_recording_tell_how_to_leave_it) {
     auto& hint = part<QLabel>("hint");
     wait_until([&] { return hint.isVisible() && hint.text().contains("Esc leaves it"); });
     press(Qt::Key_F8);
-    wait_until([&] { return hint.isVisible() && hint.parentWidget() != &window_->views().scene(); });
+    wait_until(
+        [&] { return hint.isVisible() && hint.parentWidget() != &window_->views().scene(); });
     press(Qt::Key_Escape);
-    wait_until([&] { return window_->live() && !(hint.isVisible() && hint.text().contains("Esc")); });
+    wait_until(
+        [&] { return window_->live() && !(hint.isVisible() && hint.text().contains("Esc")); });
 }
 
 TEST_F(WordsInWindow, suggest_the_name_of_the_volume_for_its_surface) {
