@@ -124,7 +124,7 @@ Quantity::Quantity(const QString& name, const QString& unit, double low, double 
     slider_->setRange(0, slider_places);
     slider_->setSingleStep(slider_places / 100);
     slider_->setPageStep(slider_places / 10);
-    slider_->setMinimumWidth(3 * fontMetrics().height());
+    slider_->setMinimumWidth(2 * fontMetrics().height());
     let_wheel_pass(*slider_);
     box_->setSuffix(unit.isEmpty() ? QString() : " " + unit);
     if (scale == Scale::factors) {

@@ -170,14 +170,13 @@ QLayout* BrushControls::make_form() {
                                const double infinity = std::numeric_limits<double>::infinity();
                                change([&](BrushChoice& c) { c.rate = on ? infinity : rate_; });
                            }});
-    auto* both = row_of({rate, at_once});
-    both->setFocusProxy(rate);
     auto* form = new QFormLayout;
     form->setVerticalSpacing(3);
     form->addRow(as_tool);
     add_row(*form, tr("Radius"), radius_, radius_->toolTip());
     add_row(*form, tr("Hardness"), hardness, hardness->toolTip());
-    add_row(*form, tr("Rate"), both, rate->toolTip());
+    add_row(*form, tr("Rate"), rate, rate->toolTip());
+    form->addRow("", at_once);
     add_row(
         *form, tr("Value"), make_value(),
         tr("What a whole touch leaves [data units]. Automatic: what fits the level that is felt"));

@@ -220,7 +220,7 @@ void DeviceControls::make_controls() {
 
 QComboBox* DeviceControls::make_button(const Words& words,
                                        run::ButtonSetup run::Buttons::*purpose) {
-    return choice(
+    auto* box = choice(
         words, std::vector<std::string>(),
         {[this, purpose] {
              const auto* live = content_.live();
@@ -231,6 +231,11 @@ QComboBox* DeviceControls::make_button(const Words& words,
              wanted.*purpose = run::button_from("", text);
              messages_.guarded([&] { content_.use_buttons(wanted); });
          }});
+    // Its longest words must not make the panel wider.
+    box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    box->setMinimumContentsLength(8);
+    box->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+    return box;
 }
 
 /// Lists the buttons of the device.

@@ -57,7 +57,7 @@ QWidget* LayersControls::make_choice() {
         {"redo_layers", "↷", tr("Redo the change of layers that was undone"), tr("Redo, layers")},
         [this] { step(false); }, [this] { return history_.can_redo(); });
     for (QWidget* one : {undo, redo}) one->setMaximumWidth(2 * fontMetrics().height());
-    return column_of({choice_, row_of({open, save, add, undo, redo}, 1)});
+    return column_of({row_of({choice_, undo, redo}, 0), row_of({open, save, add}, 1)});
 }
 
 /// Layers by label have an order instead of levels.

@@ -197,6 +197,7 @@ QWidget* LookControls::make_volume() {
     each_time(level, [this](NumberBox& box) { box.setSingleStep(editor_->fine_step()); });
     for (NumberBox* box : {level, opacity}) {
         box->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+        box->setMinimumWidth(5 * fontMetrics().height());  // its range would need more
     }
     for (QWidget* one : std::initializer_list<QWidget*>{level, opacity, its_colour}) {
         each_time(one, [this](QWidget& shown) { shown.setEnabled(held_point()); });

@@ -79,9 +79,14 @@ Panel::Panel(const Desk& desk, QWidget* parent)
 
 Panel::~Panel() = default;
 
+/// As narrow as its parts allow: the picture needs the room.
+QSize Panel::sizeHint() const {
+    return {minimumSizeHint().width(), QWidget::sizeHint().height()};
+}
+
 void Panel::build() {
     auto* column = new QVBoxLayout(this);
-    column->setContentsMargins(6, 6, 6, 0);
+    column->setContentsMargins(4, 6, 4, 0);
     const auto part = [](const QString& title, const char* name, QWidget* content) {
         auto* section = new Section(title, name, content);
         if (auto* form = qobject_cast<Form*>(content)) {

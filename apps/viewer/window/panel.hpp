@@ -29,6 +29,7 @@ class Panel : public QWidget {
     /// Of a recording only the look can be set, without a session nothing.
     explicit Panel(const Desk& desk, QWidget* parent = nullptr);
     ~Panel() override;
+    QSize sizeHint() const override;
 
     IsovalueControls& isovalue_controls() { return *isovalue_; }
     LookControls& look_controls() { return *look_; }

@@ -132,6 +132,7 @@ TEST_F(LayersInWindow, a_level_is_dragged_on_the_histogram_while_one_feels) {
     feel_ct();
     pick(ct_set);
     ASSERT_TRUE(layers());
+    wait_until_settled();  // the list of layers needs room
     LevelChart& chart = window_->panel().isovalue_controls().chart();
     const LevelAxis axis = chart.axis();
     const double y = chart.strip().top() - 20;
