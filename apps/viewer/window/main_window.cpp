@@ -216,17 +216,18 @@ bool MainWindow::lacks_grid() const {
 
 /// Tells which facts about the grids of volume and overlay are missing.
 void MainWindow::show_missing() {
+    const QString sides =
+        tr("Sides of the body are not known: say how the volume lies, and its spacing");
     if (!lacks_grid()) {
         const QString warning = panel_->overlay_controls().warning();
-        return views_->set_missing(
-            warning.isEmpty() ? QString() : tr("The overlay may lie elsewhere"), warning);
+        if (warning.isEmpty()) return views_->set_missing({}, sides);
+        return views_->set_missing(tr("The overlay may lie elsewhere"), warning);
     }
     const Geometry& grid = content_.volume()->loaded.volume.geometry();
-    views_->set_missing(
-        grid.oriented   ? tr("No spacing in the file")
-        : grid.measured ? tr("No orientation in the file")
-                        : tr("No orientation and no spacing in the file"),
-        tr("Sides of the body are not known: say how the volume lies, and its spacing"));
+    views_->set_missing(grid.oriented   ? tr("No spacing in the file")
+                        : grid.measured ? tr("No orientation in the file")
+                                        : tr("No orientation and no spacing in the file"),
+                        sides);
 }
 
 void MainWindow::restore_layout() {
