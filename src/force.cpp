@@ -123,7 +123,7 @@ Vec3 within(Vec3 force, const Vec3& before, const Bounds& bounds, double step,
 }
 
 /// A spring of translation [N] or rotation [N mm], or a magnet.
-struct Spring {
+struct SpringForce {
     double now;      // its force, within the limit
     double by_hand;  // by which the hand's motion since the last tick can have raised it
     double before;   // its force in the last tick
@@ -144,16 +144,16 @@ double steepest(const ForceSettings& settings) {
                     magnet.distance > 0 ? 4 * magnet.peak / magnet.distance : 0.0);
 }
 
-Spring spring_of(const ForceState& state, const ForceSettings& settings, const ForceInput& input,
-                 double part, double most) {
+SpringForce spring_of(const ForceState& state, const ForceSettings& settings,
+                      const ForceInput& input, double part, double most) {
     const double now = input.constrained ? part * settings.stiffness * input.pull.norm()
                                          : magnet_force(settings.magnet, input).norm();
     return {std::min(now, most), steepest(settings) * (input.hand - state.hand).norm(),
             state.spring, most};
 }
 
-Spring turning_spring_of(const ForceState& state, const ForceInput& input, double part,
-                         double most) {
+SpringForce turning_spring_of(const ForceState& state, const ForceInput& input, double part,
+                              double most) {
     const double stiffness = input.constrained ? input.rotational_stiffness : 0;
     const double way =
         state.turns ? rotation_between(state.orientation, input.orientation).norm() : 0;
@@ -163,8 +163,8 @@ Spring turning_spring_of(const ForceState& state, const ForceInput& input, doubl
 
 /// The part of the ramp at this time. After a change the ramp goes on from the part with which the
 /// springs give what they gave before. `step` is the time since the last tick [s].
-double part_of_ramp(ForceState& state, double ramp, double time, double step, const Spring& spring,
-                    const Spring& turning) {
+double part_of_ramp(ForceState& state, double ramp, double time, double step,
+                    const SpringForce& spring, const SpringForce& turning) {
     const double since = time - state.ramp_begin;
     const double part = since >= ramp ? 1 : since / ramp;
     if (!std::exchange(state.changed, false)) return part;
@@ -348,8 +348,8 @@ ForceResult render_force(ForceState& state, const ForceSettings& settings,
     if (!std::isfinite(force.squaredNorm()) || !std::isfinite(torque.squaredNorm())) {
         return stop(state, force_not_finite);
     }
-    Spring spring = spring_of(state, settings, input, part, most_force);
-    Spring turning = turning_spring_of(state, input, turns ? part : 0, most_torque);
+    SpringForce spring = spring_of(state, settings, input, part, most_force);
+    SpringForce turning = turning_spring_of(state, input, turns ? part : 0, most_torque);
     // The force without a limit decides.
     const bool strong = part > 0 && !(force.norm() <= part * settings.start_below);
     if (waits(state, input, strong)) {
