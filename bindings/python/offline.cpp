@@ -12,7 +12,7 @@
 #include "bindings/python/renderer.hpp"
 #include "bindings/python/trace_table.hpp"
 #include "palpate/io/csv.hpp"
-#include "palpate/setting.hpp"
+#include "palpate/names.hpp"
 
 namespace palpate::python {
 namespace {
