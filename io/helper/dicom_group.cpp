@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <sstream>
 
 #include "io/helper/headers.hpp"
 
@@ -35,9 +36,14 @@ std::string DicomGroup::representation(DicomTag tag) const {
 }
 
 std::string DicomGroup::text(DicomTag tag) const {
-    std::string value = bytes(tag);
-    value.resize(strnlen(value.c_str(), value.size()));
-    return trimmed(value);
+    std::istringstream values(bytes(tag));
+    std::string all;
+    for (std::string value; std::getline(values, value, '\\');) {
+        value.resize(strnlen(value.c_str(), value.size()));
+        all += trimmed(value) + '\\';
+    }
+    if (!all.empty()) all.pop_back();
+    return all;
 }
 
 std::vector<double> DicomGroup::numbers(DicomTag tag) const {

@@ -25,7 +25,7 @@ class DicomGroup {
     explicit DicomGroup(const gdcm::DataSet& data, Sequence of = nullptr)
         : data_(&data), of_(std::move(of)) {}
 
-    /// Without padding.
+    /// Each of its values without padding.
     std::string text(DicomTag tag) const;
     /// Numbers as text (DS, IS). Throws Failure where they make no sense.
     std::vector<double> numbers(DicomTag tag) const;

@@ -11,6 +11,7 @@
 
 #include "io/helper/dicom_header.hpp"
 #include "io/helper/dicom_library.hpp"
+#include "io/helper/dicom_series.hpp"
 #include "io/helper/dicom_stack.hpp"
 #include "io/helper/readers.hpp"
 
