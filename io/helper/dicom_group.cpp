@@ -1,6 +1,9 @@
 // Reads elements of a DICOM data set. See the header.
 #include "io/helper/dicom_group.hpp"
 
+#include <gdcmDicts.h>
+#include <gdcmGlobal.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -31,7 +34,10 @@ std::string DicomGroup::bytes(DicomTag tag) const {
 
 std::string DicomGroup::representation(DicomTag tag) const {
     if (!has(tag)) return {};
-    const gdcm::VR vr = data_->GetDataElement(tag_of(tag)).GetVR();
+    gdcm::VR vr = data_->GetDataElement(tag_of(tag)).GetVR();
+    if (vr == gdcm::VR::INVALID || vr == gdcm::VR::UN) {
+        vr = gdcm::Global::GetInstance().GetDicts().GetDictEntry(tag_of(tag)).GetVR();
+    }
     return vr == gdcm::VR::INVALID ? std::string() : gdcm::VR::GetVRString(vr);
 }
 
@@ -85,10 +91,7 @@ double DicomGroup::real(DicomTag tag) const {
 }
 
 std::vector<std::uint32_t> DicomGroup::counts(DicomTag tag) const {
-    // Without a representation (implicit little endian) the length of a single value tells.
-    const std::string raw = bytes(tag);
-    const std::string vr = representation(tag);
-    if (vr == "UL" || (vr.empty() && raw.size() == 4)) return binary<std::uint32_t>(tag);
+    if (representation(tag) == "UL") return binary<std::uint32_t>(tag);
     const auto narrow = binary<std::uint16_t>(tag);
     return {narrow.begin(), narrow.end()};
 }

@@ -54,6 +54,7 @@ class DicomGroup {
   private:
     /// As GDCM holds them: numbers in this machine's order.
     std::string bytes(DicomTag tag) const;
+    /// The type that the file gives, or else that of GDCM's dictionary.
     std::string representation(DicomTag tag) const;
     const gdcm::DataSet* data_;
     Sequence of_;

@@ -55,15 +55,20 @@ void set_table(DicomSlice& s, const DicomGroup& data) {
     if (items.empty()) return;
     const auto told = items.front().counts({0x0028, 0x3002});
     const auto values = items.front().counts({0x0028, 0x3006});
+    const auto bytes = items.front().binary<std::uint8_t>({0x0028, 0x3006});
     const std::size_t count = told.size() == 3 && told[0] == 0 ? 65536 : told.empty() ? 0 : told[0];
-    if (told.size() != 3 || count == 0 || values.size() < count) {
-        throw Failure("its Modality LUT is damaged or has entries of 8 bits; export it again");
+    // Entries of 8 bits have a byte each, or, of some writers, two, which their length tells.
+    const bool are_bytes = told.size() == 3 && told[2] == 8 && values.size() < count;
+    if (told.size() != 3 || count == 0 || (are_bytes ? bytes.size() : values.size()) < count) {
+        throw Failure("its Modality LUT is damaged; export it again");
     }
     ValueTable table;
     const bool is_signed = data.counts({0x0028, 0x0103}) == std::vector<std::uint32_t>{1};
     table.first =
         is_signed ? static_cast<std::int16_t>(told[1]) : static_cast<std::int32_t>(told[1]);
-    table.values.assign(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
+    for (std::size_t i = 0; i < count; ++i) {
+        table.values.push_back(are_bytes ? bytes[i] : static_cast<std::uint16_t>(values[i]));
+    }
     s.table = std::make_shared<const ValueTable>(std::move(table));
     s.has_rescale = true;
     const std::string units = items.front().text({0x0028, 0x3004});
