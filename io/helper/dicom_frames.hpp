@@ -1,4 +1,4 @@
-// The frames of a DICOM file as slices: where they lie, or which moments they are.
+// Makes slices of the frames of a DICOM file, with their places or moments.
 #pragma once
 
 #include "io/helper/dicom_group.hpp"

@@ -1,5 +1,5 @@
-// Where a DICOM image lies, and how large its pixels are, as its elements or those of a functional
-// group say.
+// Reads the place of a DICOM image and the size of its pixels, from its elements or from those of a
+// functional group.
 #pragma once
 
 #include "io/helper/dicom_group.hpp"

@@ -1,4 +1,4 @@
-// What the headers of DICOM slices say, and slices that belong together.
+// The contents of the header of a DICOM slice, and slices that belong together.
 #pragma once
 
 #include <limits>

@@ -1,5 +1,5 @@
-// What the stored numbers of a DICOM image mean: slope and intercept, a dose, a table, units, the
-// window and padding.
+// The meaning of the stored numbers of a DICOM image: slope and intercept, a dose, a table, units,
+// the window and padding.
 #pragma once
 
 #include "io/helper/dicom_group.hpp"

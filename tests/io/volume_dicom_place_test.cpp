@@ -1,4 +1,4 @@
-// Where DICOM slices lie if their headers say it oddly, only in part, or for several bodies.
+// The places of DICOM slices whose headers give them oddly, only in part, or for several bodies.
 #include <algorithm>
 #include <cmath>
 
