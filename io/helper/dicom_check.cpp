@@ -2,13 +2,12 @@
 #include "io/helper/dicom_check.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <map>
 #include <set>
 #include <utility>
 
-#include "io/helper/dicom_bytes.hpp"
+#include "io/helper/dicom_elements.hpp"
 #include "io/helper/dicom_pixels.hpp"
 #include "io/inflate.hpp"
 #include "io/system/number.hpp"
@@ -23,6 +22,9 @@ constexpr std::uint32_t pixel_data = 0x7fe00010, float_pixels = 0x7fe00008,
 constexpr int deepest = 64;
 constexpr std::uint64_t most_beside_pixels = std::uint64_t{64} << 20;  // of a deflated file
 constexpr int most_repeated = 10000;
+const char* const implicit_syntax = "1.2.840.10008.1.2";
+const char* const explicit_syntax = "1.2.840.10008.1.2.1";
+const char* const big_endian_syntax = "1.2.840.10008.1.2.2";
 const char* const deflated_syntax = "1.2.840.10008.1.2.1.99";
 const char* const jpeg_2000_syntax = "1.2.840.10008.1.2.4.90";
 
@@ -31,19 +33,16 @@ bool is_high_throughput(const std::string& syntax) {
     return syntax.starts_with("1.2.840.10008.1.2.4.20");
 }
 
-/// One that GDCM knows, of no more letters: headers of deflated files and of plain fragments (98)
-/// are explicit little endian.
-std::string syntax_of_header(const std::string& syntax) {
-    if (is_high_throughput(syntax)) return jpeg_2000_syntax;
-    const bool is_plain = syntax == deflated_syntax || syntax == "1.2.840.10008.1.2.1.98";
-    return is_plain ? "1.2.840.10008.1.2.1" : syntax;
+/// All that stands before a data set of this syntax, for libraries.
+std::string start_of_file(std::string syntax) {
+    if (syntax.size() % 2 == 1) syntax += '\0';
+    const auto size = static_cast<char>(syntax.size());
+    std::string start(128, '\0');
+    start += "DICM";
+    start += std::string("\2\0\0\0UL\4\0", 8) + static_cast<char>(size + 8) + std::string(3, '\0');
+    start += std::string("\2\0\x10\0UI", 6) + size + '\0' + syntax;
+    return start;
 }
-
-struct Element {
-    std::uint32_t tag = 0;
-    std::uint32_t length = 0;
-    std::string vr;
-};
 
 /// A number of bits from the bit `first` on, the lowest of each byte first (PS3.5, 8.1.1).
 std::vector<std::byte> one_byte_each(std::span<const std::byte> bytes, std::uint64_t first,
@@ -56,18 +55,19 @@ std::vector<std::byte> one_byte_each(std::span<const std::byte> bytes, std::uint
     return all;
 }
 
-class Walk {
+class Walk : private DicomElements {
   public:
-    explicit Walk(const std::filesystem::path& file) : file_(file), bytes_(file) {}
+    explicit Walk(const std::filesystem::path& file) : DicomElements(file) {}
 
     DicomExtent whole_file() {
         try {
             const std::string syntax = meta_information();
             begin_data_set(syntax);
-            walk(data_set_, UINT64_MAX, syntax != "1.2.840.10008.1.2", 0);
+            const bool is_explicit = has_types(syntax);
+            walk(data_set_, UINT64_MAX, is_explicit, 0);
             if (extent_.sop_class.empty()) note_no_class();
             if (extent_.rows > 0 && extent_.columns > 0) check_pixels(syntax);
-            take_header(syntax);
+            take_header(is_explicit);
         } catch (const DamagedStream& e) {
             fail(std::string("is damaged (") + e.what() + ")");
         }
@@ -96,41 +96,48 @@ class Walk {
     }
 
   private:
-    [[noreturn]] void fail(const std::string& what) const {
-        throw Failure(quoted(file_) + " " + what + "; copy or export it again");
-    }
-
-    /// Group 2, which is explicit little endian in every file; returns the transfer syntax. Some
-    /// files have no such group, and some not the 128 bytes and four letters before it (PS3.10).
+    /// Group 2, which should be explicit little endian in every file; returns the transfer syntax.
+    /// Some files have no such group, and some not the 128 bytes and four letters before it
+    /// (PS3.10).
     std::string meta_information() {
         if (!bytes_.reaches(140)) fail("is too short for a DICOM file");
         constexpr std::uint32_t letters = 0x4d434944;  // "DICM"
-        if (number<std::uint32_t>(0) == letters) start_ = sizeof letters;
-        std::uint64_t at = number<std::uint32_t>(128) == letters ? 132 : start_;
+        std::uint64_t at = number<std::uint32_t>(128) == letters ? 132
+                           : number<std::uint32_t>(0) == letters ? sizeof letters
+                                                                 : 0;
         std::string syntax;
         while (bytes_.reaches(at + 8) && number<std::uint16_t>(at) == 0x0002) {
-            const Element e = element(at, true);
+            const DicomElement e = element(at, true);
             if (e.tag == 0x00020002) extent_.sop_class = text(at, e);
-            if (e.tag == 0x00020010) {
-                syntax = text(at, e);
-                syntax_at_ = at;
-            }
+            if (e.tag == 0x00020010) syntax = text(at, e);
             at = past_value(at, e);
         }
         data_set_ = at;
+        lacks_types_ = false;  // counts for the data set
         if (!syntax.empty()) return syntax;
         extent_.notes.emplace_back(
             "it does not say how its elements are written (no transfer "
             "syntax): that was seen from the first of them");
-        return is_upper(number<char>(at + 4)) && is_upper(number<char>(at + 5))
-                   ? "1.2.840.10008.1.2.1"
-                   : "1.2.840.10008.1.2";
+        return is_upper(number<char>(at + 4)) && is_upper(number<char>(at + 5)) ? explicit_syntax
+                                                                                : implicit_syntax;
+    }
+
+    /// Whether elements have types. Some writers name the syntax without types and write them.
+    bool has_types(const std::string& syntax) {
+        if (syntax != implicit_syntax || !bytes_.reaches(data_set_ + 8)) return true;
+        const std::string first = {number<char>(data_set_ + 4), number<char>(data_set_ + 5)};
+        if (!is_type(first)) return false;
+        extent_.notes.emplace_back(
+            "its transfer syntax says that elements have no types, and they have: they were read "
+            "as "
+            "they are");
+        return true;
     }
 
     static bool is_upper(char c) { return c >= 'A' && c <= 'Z'; }
 
     void begin_data_set(const std::string& syntax) {
-        if (syntax == "1.2.840.10008.1.2.2") bytes_.set_swapped();
+        if (syntax == big_endian_syntax) bytes_.set_swapped();
         extent_.syntax = is_high_throughput(syntax) ? jpeg_2000_syntax : syntax;
         if (syntax != deflated_syntax) return;
         bytes_.deflated_from(data_set_, most_beside_pixels);
@@ -146,101 +153,7 @@ class Walk {
             "it does not say of which class it is (SOPClassUID): it was taken as an image");
     }
 
-    template <class T>
-    T number(std::uint64_t at) {
-        if (!bytes_.reaches(at + sizeof(T))) fail("is cut off");
-        return bytes_.number<T>(at);
-    }
-
-    std::uint32_t tag_at(std::uint64_t at) {
-        return std::uint32_t{number<std::uint16_t>(at)} << 16 | number<std::uint16_t>(at + 2);
-    }
-
-    /// Reads tag, type and length; moves `at` to the value.
-    Element element(std::uint64_t& at, bool is_explicit) {
-        Element e;
-        e.tag = tag_at(at);
-        at += 4;
-        if (!is_explicit || e.tag >> 16 == 0xfffe) {
-            e.length = number<std::uint32_t>(at);
-            at += 4;
-            return e;
-        }
-        e.vr = {number<char>(at), number<char>(at + 1)};
-        const auto is_no_letter = [](unsigned char c) { return std::isalpha(c) == 0; };
-        if (e.tag != 0 && std::ranges::any_of(e.vr, is_no_letter)) {
-            if (takes_empty_type(at, e)) return e;
-            e.vr.clear();  // some writers leave it out here and there, or everywhere
-            lacks_types_ = true;
-            e.length = number<std::uint32_t>(at);
-            at += 4;
-            return e;
-        }
-        if (!is_long_type(e.vr) && !is_short_type(e.vr))
-            fail("is damaged (an element of no known type)");
-        take_length(at, e, is_long_type(e.vr));
-        return e;
-    }
-
-    static bool is_long_type(const std::string& vr) {
-        static const std::set<std::string> all = {"OB", "OW", "OF", "OD", "OL", "OV", "SQ",
-                                                  "UC", "UR", "UT", "UN", "SV", "UV"};
-        return all.contains(vr);
-    }
-
-    static bool is_short_type(const std::string& vr) {
-        static const std::set<std::string> all = {"AE", "AS", "AT", "CS", "DA", "DS", "DT",
-                                                  "FD", "FL", "IS", "LO", "LT", "PN", "SH",
-                                                  "SL", "SS", "ST", "TM", "UI", "UL", "US"};
-        return all.contains(vr);
-    }
-
-    /// Moves `at` from the type to the value.
-    void take_length(std::uint64_t& at, Element& e, bool is_long) {
-        e.length = is_long ? number<std::uint32_t>(at + 4) : number<std::uint16_t>(at + 2);
-        at += is_long ? 8 : 4;
-    }
-
-    /// Some writers put "??" or zeros in the place of a type. Its length is short or long: the one
-    /// behind which the data set goes on. Libraries get to see a type of such a length.
-    bool takes_empty_type(std::uint64_t& at, Element& e) {
-        const bool is_marked = e.vr == "??";
-        if (!is_marked && e.vr != std::string(2, '\0')) return false;
-        for (const bool is_long : {false, true}) {
-            if (!goes_on(at, e, is_long)) continue;
-            e.vr = is_long ? "UN" : "LO";
-            given_types_[at] = e.vr;
-            take_length(at, e, is_long);
-            return true;
-        }
-        if (is_marked) fail("has an element of the type '?\?', whose length is not sure");
-        return false;
-    }
-
-    /// Whether a known element, the end of an item or that of the file comes after elements like
-    /// `e`, whose type is at `at`.
-    bool goes_on(std::uint64_t at, Element e, bool is_long) {
-        constexpr int most = 100;
-        const std::string type = e.vr;
-        for (int i = 0; i < most; ++i) {
-            if (!bytes_.reaches(at + 8) || (is_long && number<std::uint16_t>(at + 2) != 0)) {
-                return false;
-            }
-            take_length(at, e, is_long);
-            at += e.length;
-            if (!bytes_.reaches(at + 8)) return bytes_.reaches(at) && !bytes_.reaches(at + 1);
-            const std::uint32_t before = std::exchange(e.tag, tag_at(at));
-            if (e.tag >> 16 == 0xfffe) return true;
-            e.vr = {number<char>(at + 4), number<char>(at + 5)};
-            const bool is_known = is_long_type(e.vr) || is_short_type(e.vr);
-            if (e.tag <= before || !(is_known || e.vr == type)) return false;
-            if (is_known) return true;
-            at += 4;
-        }
-        return true;
-    }
-
-    std::string text(std::uint64_t at, const Element& e) {
+    std::string text(std::uint64_t at, const DicomElement& e) {
         std::string value;
         for (std::uint64_t i = 0; i < std::min<std::uint32_t>(e.length, 64); ++i) {
             const char c = number<char>(at + i);
@@ -249,14 +162,14 @@ class Walk {
         return trimmed(value);
     }
 
-    std::uint64_t past_value(std::uint64_t at, const Element& e) {
+    std::uint64_t past_value(std::uint64_t at, const DicomElement& e) {
         const std::uint64_t end = at + e.length;
         if (!bytes_.reaches(end)) fail("is cut off or damaged (an element reaches beyond its end)");
         return end;
     }
 
     /// The elements that say how large the image is; one that comes twice may say two things.
-    void take_size(std::uint64_t at, const Element& e) {
+    void take_size(std::uint64_t at, const DicomElement& e) {
         static const std::map<std::uint32_t, std::int64_t DicomExtent::*> sizes = {
             {0x00280002, &DicomExtent::components}, {0x00280008, &DicomExtent::frames},
             {0x00280010, &DicomExtent::rows},       {0x00280011, &DicomExtent::columns},
@@ -289,10 +202,10 @@ class Walk {
     std::uint64_t walk(std::uint64_t at, std::uint64_t end, bool is_explicit, int depth) {
         if (depth > deepest) fail("is damaged (nested too deep)");
         while (at < end && (depth > 0 || bytes_.reaches(at + 1))) {
-            if (depth == 0 && only_padding_from(at)) return at;
+            if (depth == 0 && (only_padding_from(at) || only_line_end_from(at))) return at;
             if (!bytes_.reaches(at + 8)) fail("is cut off");
             const std::uint64_t start = at;
-            const Element e = element(at, is_explicit);
+            const DicomElement e = element(at, is_explicit);
             if (e.tag == item_end || e.tag == sequence_end) return at;
             if (depth == 0) {
                 if (e.tag != 0 && e.tag == last_tag_ && ++repeated_ > most_repeated) {
@@ -303,6 +216,9 @@ class Walk {
             }
             if (depth == 0 && e.tag == 0x00080016 && extent_.sop_class.empty()) {
                 extent_.sop_class = text(at, e);
+            }
+            if (depth == 0 && e.tag == 0x00280004) {
+                extent_.is_subsampled = text(at, e).ends_with("_422");
             }
             const bool is_real = e.tag == float_pixels || e.tag == double_pixels;
             const bool pixels = (e.tag == pixel_data || is_real) && depth == 0;
@@ -333,13 +249,29 @@ class Walk {
         return true;
     }
 
-    /// All that libraries see of the file, but for frames that they unpack.
-    void take_header(const std::string& syntax) {
+    /// A line end after the last element, of programs that took the file for text.
+    bool only_line_end_from(std::uint64_t at) {
+        if (!pixels_.found || bytes_.reaches(at + 8)) return false;
+        for (std::uint64_t i = at; bytes_.reaches(i + 1); ++i) {
+            if (std::string("\r\n\x1a").find(number<char>(i)) == std::string::npos) return false;
+        }
+        extent_.notes.emplace_back("there is a line end after its last element: it was ignored");
+        return true;
+    }
+
+    /// All that libraries see of the file, but for frames that they unpack: the data set up to its
+    /// pixels, after a start of our own, because that of the file may be unusual.
+    void take_header(bool is_explicit) {
         if (!pixels_.found) return;
-        const auto bytes = bytes_.view(0, pixels_.element);
-        extent_.header.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        const auto bytes = bytes_.view(data_set_, pixels_.element - data_set_);
+        extent_.header = start_of_file(!is_explicit       ? implicit_syntax
+                                       : bytes_.swapped() ? big_endian_syntax
+                                                          : explicit_syntax);
+        const std::size_t start = extent_.header.size();
+        extent_.header.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
         for (const auto& [at, type] : given_types_) {
-            if (at < pixels_.element) extent_.header.replace(at, type.size(), type);
+            if (at < data_set_ || at >= pixels_.element) continue;
+            extent_.header.replace(start + at - data_set_, type.size(), type);
         }
         // GDCM looks a few bytes beyond an element without a type: an element that is not used
         // follows.
@@ -348,14 +280,10 @@ class Walk {
             extent_.header +=
                 std::string("\xe0\x7f\1\0UN\0\0\x40\0\0\0", 12) + std::string(ahead, '\0');
         }
-        if (std::string known = syntax_of_header(syntax); known != syntax) {
-            known.resize(syntax.size(), '\0');  // padding
-            extent_.header.replace(syntax_at_, syntax.size(), known);
-        }
-        extent_.header.erase(0, start_);
     }
 
-    void begin_pixels(std::uint64_t element, std::uint64_t at, const Element& e, bool is_real) {
+    void begin_pixels(std::uint64_t element, std::uint64_t at, const DicomElement& e,
+                      bool is_real) {
         if (pixels_.found) fail("is damaged (it has its samples twice)");
         pixels_.found = extent_.has_image = true;
         pixels_.element = element;
@@ -371,15 +299,20 @@ class Walk {
         pixels_.plain = e.length;
         // Before as much is unpacked. Samples of no declared size are allowed no memory.
         if (extent_.rows < 1 || extent_.columns < 1) return;
-        check_plain_pixels(file_, e.length, extent_);
+        check_plain_size(file_, e.length, extent_);
         bytes_.allow(e.length);
     }
 
     /// The items of a sequence, or the fragments of compressed pixel data, without a length.
     std::uint64_t items(std::uint64_t at, bool is_explicit, bool fragments, int depth) {
         while (true) {
+            if (fragments && !bytes_.reaches(at + 1)) {
+                extent_.notes.emplace_back(
+                    "it lacks the mark behind its samples, which are complete");
+                return at;
+            }
             if (!bytes_.reaches(at + 8)) fail("is cut off (a sequence has no end)");
-            const Element e = element(at, is_explicit);
+            const DicomElement e = element(at, is_explicit);
             if (e.tag == sequence_end) return at;
             if (e.tag != item) fail("is damaged (a sequence has something else than items)");
             if (e.length != undefined_length) {
@@ -396,7 +329,7 @@ class Walk {
     void check_pixels(const std::string& syntax) {
         if (!pixels_.found) return;
         if (pixels_.plain) {
-            if (const auto note = check_plain_pixels(file_, *pixels_.plain, extent_)) {
+            if (const auto note = check_plain_pixels(file_, bytes_, pixels_, extent_)) {
                 extent_.notes.push_back(*note);
             }
             return;
@@ -404,18 +337,13 @@ class Walk {
         extent_.compression = check_compressed_pixels(file_, syntax, bytes_, pixels_, extent_);
     }
 
-    const std::filesystem::path& file_;
-    DicomBytes bytes_;
     DicomExtent extent_;
     DicomPixels pixels_;
-    bool lacks_types_ = false;
     std::set<std::uint32_t> taken_;
     std::uint32_t last_tag_ = 0;
     int repeated_ = 0;
-    std::uint64_t syntax_at_ = 0, data_set_ = 0;
+    std::uint64_t data_set_ = 0;
     std::uint64_t padding_end_ = 0;  // where the last run of one byte that was looked at ends
-    std::uint64_t start_ = 0;        // behind the letters DICM, if these are the first
-    std::map<std::uint64_t, std::string> given_types_;  // by their places
 };
 
 }  // namespace
@@ -426,8 +354,9 @@ int DicomExtent::shift() const {
 }
 
 std::uint64_t DicomExtent::bytes() const {
+    const std::int64_t values = is_subsampled && components == 3 ? 2 : components;  // of a pixel
     return (static_cast<std::uint64_t>(rows) * static_cast<std::uint64_t>(columns) *
-                static_cast<std::uint64_t>(frames) * static_cast<std::uint64_t>(components) *
+                static_cast<std::uint64_t>(frames) * static_cast<std::uint64_t>(values) *
                 static_cast<std::uint64_t>(bits) +
             7) /
            8;

@@ -14,11 +14,12 @@ struct DicomExtent {
     std::string sop_class;  ///< from the file's meta information
     std::int64_t rows = 0, columns = 0;
     std::int64_t frames = 1;
-    std::int64_t components = 1;              ///< values a pixel
-    std::int64_t bits = 16;                   ///< allocated for a value
-    std::int64_t stored_bits = 0;             ///< used of these; 0 if not given
-    std::int64_t high_bit = -1;               ///< the highest of them; -1 if not given
-    std::int64_t representation = 0;          ///< 1: signed
+    std::int64_t components = 1;      ///< values a pixel
+    std::int64_t bits = 16;           ///< allocated for a value
+    std::int64_t stored_bits = 0;     ///< used of these; 0 if not given
+    std::int64_t high_bit = -1;       ///< the highest of them; -1 if not given
+    std::int64_t representation = 0;  ///< 1: signed
+    bool is_subsampled = false;       ///< two pixels of three components share two of these (4:2:2)
     bool has_image = false, is_real = false;  ///< is_real: Float or Double Float Pixel Data
     std::size_t swapped_bytes = 1;            ///< of a big-endian word of samples; 1: none
     std::string syntax;                       ///< UID

@@ -1,10 +1,14 @@
 // Reads elements of a DICOM data set. See the header.
 #include "io/helper/dicom_group.hpp"
 
+#include <gdcmDicts.h>
+#include <gdcmGlobal.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <sstream>
 
 #include "io/helper/headers.hpp"
 
@@ -30,14 +34,22 @@ std::string DicomGroup::bytes(DicomTag tag) const {
 
 std::string DicomGroup::representation(DicomTag tag) const {
     if (!has(tag)) return {};
-    const gdcm::VR vr = data_->GetDataElement(tag_of(tag)).GetVR();
+    gdcm::VR vr = data_->GetDataElement(tag_of(tag)).GetVR();
+    if (vr == gdcm::VR::INVALID || vr == gdcm::VR::UN) {
+        vr = gdcm::Global::GetInstance().GetDicts().GetDictEntry(tag_of(tag)).GetVR();
+    }
     return vr == gdcm::VR::INVALID ? std::string() : gdcm::VR::GetVRString(vr);
 }
 
 std::string DicomGroup::text(DicomTag tag) const {
-    std::string value = bytes(tag);
-    value.resize(strnlen(value.c_str(), value.size()));
-    return trimmed(value);
+    std::istringstream values(bytes(tag));
+    std::string all;
+    for (std::string value; std::getline(values, value, '\\');) {
+        value.resize(strnlen(value.c_str(), value.size()));
+        all += trimmed(value) + '\\';
+    }
+    if (!all.empty()) all.pop_back();
+    return all;
 }
 
 std::vector<double> DicomGroup::numbers(DicomTag tag) const {
@@ -79,10 +91,7 @@ double DicomGroup::real(DicomTag tag) const {
 }
 
 std::vector<std::uint32_t> DicomGroup::counts(DicomTag tag) const {
-    // Without a representation (implicit little endian) the length of a single value tells.
-    const std::string raw = bytes(tag);
-    const std::string vr = representation(tag);
-    if (vr == "UL" || (vr.empty() && raw.size() == 4)) return binary<std::uint32_t>(tag);
+    if (representation(tag) == "UL") return binary<std::uint32_t>(tag);
     const auto narrow = binary<std::uint16_t>(tag);
     return {narrow.begin(), narrow.end()};
 }

@@ -25,7 +25,7 @@ class DicomGroup {
     explicit DicomGroup(const gdcm::DataSet& data, Sequence of = nullptr)
         : data_(&data), of_(std::move(of)) {}
 
-    /// Without padding.
+    /// Each of its values without padding.
     std::string text(DicomTag tag) const;
     /// Numbers as text (DS, IS). Throws Failure where they make no sense.
     std::vector<double> numbers(DicomTag tag) const;
@@ -54,6 +54,7 @@ class DicomGroup {
   private:
     /// As GDCM holds them: numbers in this machine's order.
     std::string bytes(DicomTag tag) const;
+    /// The type that the file gives, or else that of GDCM's dictionary.
     std::string representation(DicomTag tag) const;
     const gdcm::DataSet* data_;
     Sequence of_;

@@ -1,7 +1,7 @@
 // The slices of a DICOM file by its header: one, or one for each of its frames.
 #pragma once
 
-#include "io/helper/dicom_stack.hpp"
+#include "io/helper/dicom_slice.hpp"
 
 namespace palpate::io {
 

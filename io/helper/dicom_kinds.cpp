@@ -128,7 +128,8 @@ void set_moment(DicomSlice& s, const FunctionalGroups& groups) {
     groups.with({0x0020, 0x9111}, [&](const DicomGroup& g) {
         s.stack = g.text({0x0020, 0x9056});
         const auto place = g.binary<std::uint32_t>({0x0020, 0x9057});
-        if (!place.empty()) s.order = static_cast<int>(place[0]);
+        s.is_numbered = !place.empty();
+        if (s.is_numbered) s.order = static_cast<int>(place[0]);
         const auto moment = g.binary<std::uint32_t>({0x0020, 0x9128});
         if (!moment.empty()) s.keys[temporal_position] = moment[0];
         s.keys[reference_time] = moment_of(g.text({0x0018, 0x9151}));

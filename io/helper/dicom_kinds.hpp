@@ -5,7 +5,7 @@
 #include <map>
 
 #include "io/helper/dicom_group.hpp"
-#include "io/helper/dicom_stack.hpp"
+#include "io/helper/dicom_slice.hpp"
 
 namespace palpate::io {
 

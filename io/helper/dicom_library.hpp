@@ -2,7 +2,7 @@
 // through GDCM, which sees a frame at a time and no header, within bounds of memory.
 #pragma once
 
-#include "io/helper/dicom_stack.hpp"
+#include "io/helper/dicom_slice.hpp"
 
 namespace palpate::io {
 

@@ -12,6 +12,12 @@ namespace {
     throw Failure(quoted(file) + " " + what + "; it is damaged: copy or export it again");
 }
 
+[[noreturn]] void fail_size(const std::filesystem::path& file, std::uint64_t bytes,
+                            std::uint64_t needed) {
+    fail(file, "has " + std::to_string(bytes) + " bytes of samples, its header asks for " +
+                   std::to_string(needed));
+}
+
 /// Frames without compression, each in a fragment of its own (PS3.5, A.4.11).
 constexpr const char* plain_in_fragments = "no compression";
 
@@ -58,10 +64,14 @@ std::vector<std::vector<std::byte>> frames_of(const DicomBytes& bytes, const Dic
     const auto frames = static_cast<std::size_t>(declared.frames);
     const std::string name = compression_of(declared.syntax);
     const bool is_code_stream = name != "RLE" && name != plain_in_fragments;
-    std::vector<std::vector<std::byte>> all;
+    std::vector<std::span<const std::byte>> fragments;
     for (std::size_t i = 1; i < pixels.fragments.size(); ++i) {
-        const auto fragment = bytes.view(pixels.fragments[i].at, pixels.fragments[i].length);
-        const bool next = all.empty() || !is_code_stream || pixels.fragments.size() == frames + 1 ||
+        if (pixels.fragments[i].length == 0) continue;
+        fragments.push_back(bytes.view(pixels.fragments[i].at, pixels.fragments[i].length));
+    }
+    std::vector<std::vector<std::byte>> all;
+    for (const auto fragment : fragments) {
+        const bool next = all.empty() || !is_code_stream || fragments.size() == frames ||
                           begins_code_stream(fragment);
         if (next) all.emplace_back();
         all.back().insert(all.back().end(), fragment.begin(), fragment.end());
@@ -77,16 +87,31 @@ std::vector<std::vector<std::byte>> frames_of(const DicomBytes& bytes, const Dic
     return all;
 }
 
-std::optional<std::string> check_plain_pixels(const std::filesystem::path& file,
-                                              std::uint64_t bytes, const DicomExtent& declared) {
+void check_plain_size(const std::filesystem::path& file, std::uint64_t bytes,
+                      const DicomExtent& declared) {
     const std::uint64_t needed = declared.bytes();
-    const std::string numbers = "has " + std::to_string(bytes) +
-                                " bytes of samples, its header asks for " + std::to_string(needed);
-    // A row more, and it is the number of rows that is wrong.
+    const std::uint64_t frame = needed / static_cast<std::uint64_t>(declared.frames);
+    if (bytes < needed || bytes - needed >= std::max<std::uint64_t>(frame, 2)) {
+        fail_size(file, bytes, needed);
+    }
+}
+
+std::optional<std::string> check_plain_pixels(const std::filesystem::path& file,
+                                              const DicomBytes& bytes, const DicomPixels& pixels,
+                                              const DicomExtent& declared) {
+    check_plain_size(file, *pixels.plain, declared);
+    const std::uint64_t needed = declared.bytes(), more = *pixels.plain - needed;
+    if (more <= 1) return std::nullopt;  // padding to an even length
+    // A row more, and it is the number of rows that is wrong, unless all of it is padding.
     const std::uint64_t row = needed / static_cast<std::uint64_t>(declared.rows * declared.frames);
-    if (bytes < needed || bytes - needed >= std::max<std::uint64_t>(row, 2)) fail(file, numbers);
-    if (bytes - needed <= 1) return std::nullopt;  // padding to an even length
-    return "there are " + std::to_string(bytes - needed) +
+    const auto surplus = bytes.view(pixels.at + needed, more);
+    const bool is_padding = declared.frames == 1 && std::ranges::all_of(surplus, [](std::byte b) {
+                                return b == std::byte{0};
+                            });
+    if (more >= std::max<std::uint64_t>(row, 2) && !is_padding) {
+        fail_size(file, *pixels.plain, needed);
+    }
+    return "there are " + std::to_string(more) +
            " bytes more of samples in a file than its header asks for; they were ignored";
 }
 

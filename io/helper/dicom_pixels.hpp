@@ -18,9 +18,15 @@ struct DicomPixels {
     std::vector<Fragment> fragments;  ///< of compressed ones; the first is a table of the frames
 };
 
-/// Bytes that are not compressed; a note if there are a few more than declared. Throws Failure.
+/// Throws Failure unless there are as many bytes that are not compressed as declared, or a few
+/// more.
+void check_plain_size(const std::filesystem::path& file, std::uint64_t bytes,
+                      const DicomExtent& declared);
+
+/// The same, by what the bytes are; a note if there are more than declared.
 std::optional<std::string> check_plain_pixels(const std::filesystem::path& file,
-                                              std::uint64_t bytes, const DicomExtent& declared);
+                                              const DicomBytes& bytes, const DicomPixels& pixels,
+                                              const DicomExtent& declared);
 
 /// The code stream of each frame: its fragments joined, without padding.
 std::vector<std::vector<std::byte>> frames_of(const DicomBytes& bytes, const DicomPixels& pixels,

@@ -4,66 +4,17 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <map>
 #include <tuple>
 
 #include "io/helper/dicom_moments.hpp"
+#include "io/helper/dicom_series.hpp"
 
 namespace palpate::io {
 namespace {
 
 constexpr double even_part = 0.02;     // of the spacing
+constexpr double missing_part = 0.1;   // the same, of slices beside missing ones
 constexpr double shift_pixels = 0.05;  // more is gantry tilt
-
-std::string key_of(const DicomSlice& s) {
-    std::string key = s.series_uid + "|" + s.stack + "|" + s.kind + "|" + std::to_string(s.rows) +
-                      "x" + std::to_string(s.columns);
-    // Moments of different places, which are not known, make no volume.
-    if (s.is_moment && !s.position) key += "|" + s.instance_uid;
-    return key;
-}
-
-/// Equal but for rounding in the files' decimals.
-bool is_same(const std::optional<Vec3>& a, const std::optional<Vec3>& b) {
-    constexpr double part = 1e-3;
-    if (!a || !b) return !a && !b;
-    return (*a - *b).cwiseAbs().maxCoeff() <= part * a->cwiseAbs().maxCoeff();
-}
-
-/// Some scanners write the echo time that they measured for each slice.
-bool is_same_echo(double a, double b) {
-    return std::abs(a - b) <= 0.01 * std::abs(a) || (std::isnan(a) && std::isnan(b));
-}
-
-bool are_alike(const DicomSlice& a, const DicomSlice& b) {
-    return is_same(a.row, b.row) && is_same(a.column, b.column) && is_same(a.pixel, b.pixel) &&
-           is_same_echo(a.echo, b.echo);
-}
-
-/// [mm] nearer slices lie at one place. Some scanners have pixels of 1 um.
-double same_place_mm(const DicomSeries& series) {
-    const auto& pixel = series.slices.front().pixel;
-    return std::min(0.05, 0.05 * (pixel ? pixel->head<2>().minCoeff() : 0.1));
-}
-
-/// [mm] along the normal; the number of a slice without a place.
-double place_along(const DicomSlice& s) {
-    if (!s.position || !s.row || !s.column) return s.frames > 1 ? s.order : s.instance;
-    return s.row->cross(*s.column).dot(*s.position);
-}
-
-/// In order; empty where slices have no place.
-std::vector<double> places_along(const DicomSeries& series) {
-    std::vector<double> along;
-    for (const DicomSlice& s : series.slices) {
-        if (!s.position || !s.row || !s.column) return {};
-        along.push_back(place_along(s));
-    }
-    std::sort(along.begin(), along.end());
-    return along;
-}
-
 SliceGroups groups_of(const DicomSeries& series, const Vec3& normal) {
     std::vector<PlacedSlice> placed;
     for (std::size_t i = 0; i < series.slices.size(); ++i) {
@@ -105,6 +56,17 @@ struct Steps {
     bool are_empty = false;  ///< the slices that are missing
 };
 
+/// [mm] The greatest distance of a slice from its place in a grid of `steps` from the first to the
+/// last one. `places` says which step each slice is at.
+double distance_from_grid(const Stack& stack, const std::vector<double>& places) {
+    const double spacing = stack.slices.back().along / places.back();
+    double greatest = 0;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        greatest = std::max(greatest, std::abs(stack.slices[i].along - places[i] * spacing));
+    }
+    return greatest;
+}
+
 /// `one`: of the slices.
 Steps steps_of(Stack& stack, const DicomSlice& one) {
     std::vector<double> gaps;
@@ -122,21 +84,26 @@ Steps steps_of(Stack& stack, const DicomSlice& one) {
     const double total = stack.slices.back().along;
     const double rounding = std::min(0.01, 0.1 * usual);  // [mm] in the files' decimals
     const double tolerance = std::max(rounding, even_part * usual);
-    if (sorted.back() - usual <= tolerance && usual - sorted.front() <= tolerance) {
-        return {total / static_cast<double>(gaps.size()), gaps.size() + 1, 0.5 * usual};
+    const double mean = total / static_cast<double>(gaps.size());
+    // Gaps that differ by little may still add up: it is the places that have to be even.
+    std::vector<double> even, places = {0};
+    for (std::size_t i = 0; i < stack.slices.size(); ++i) even.push_back(static_cast<double>(i));
+    if (distance_from_grid(stack, even) <= tolerance &&
+        (!are_empty || std::abs(mean - usual) <= tolerance)) {
+        return {mean, gaps.size() + 1, 0.5 * usual};
     }
-    double steps = 0;
-    bool multiples = true;
     for (const double gap : gaps) {
-        const double k = std::max(1.0, std::round(gap / usual));
-        multiples = multiples && std::abs(gap - k * usual) <= 0.1 * usual;
-        steps += k;
+        places.push_back(places.back() + std::max(1.0, std::round(gap / usual)));
     }
-    if (!multiples) steps = std::max(1.0, std::round(total / usual));
+    const bool multiples =
+        places != even && distance_from_grid(stack, places) <= missing_part * usual;
+    const double steps = multiples ? places.back() : std::max(1.0, std::round(total / usual));
     const double most = multiples && are_empty ? 1 << 16 : 4.0 * std::ssize(stack.slices);
     if (steps > most) {
-        throw Failure("its " + std::to_string(stack.slices.size()) + " slices are spread over " +
-                      text_of(total) + " mm, mostly gaps; give a complete series");
+        throw Failure("its " + std::to_string(stack.slices.size()) + " slices are " +
+                      text_of(sorted.front()) + " to " + text_of(sorted.back()) +
+                      " mm apart, which is no stack: most slices are missing, or several "
+                      "acquisitions are mixed; give one complete series");
     }
     const auto count = static_cast<std::size_t>(steps) + 1;
     const double spacing = total / steps;
@@ -216,10 +183,6 @@ void set_single_spacing(const DicomSlice& slice, Stack& stack) {
     }
 }
 
-bool is_placed(const DicomSlice& s) {
-    return s.position && s.row && s.column;
-}
-
 /// Columns of the row, the column and the normal.
 Mat3 plane_axes(const DicomSlice& one) {
     const Vec3 row = one.row->normalized();
@@ -236,6 +199,7 @@ Mat3 plane_axes(const DicomSlice& one) {
 struct Locations {
     const char* source = nullptr;
     std::vector<double> along;  ///< empty if there are none
+    bool is_sided = true;
 };
 
 /// Their positions along the line on which these lie, or else their SliceLocation, whose sign the
@@ -259,6 +223,7 @@ Locations locations_of(const std::vector<DicomSlice>& slices) {
         }
     } else if (std::ranges::all_of(slices, [](const auto& s) { return s.location.has_value(); })) {
         found.source = "SliceLocation";
+        found.is_sided = false;
         for (const DicomSlice& s : slices) found.along.push_back(*s.location);
     }
     return found;
@@ -306,10 +271,24 @@ void place_by_location(DicomSeries& series, std::vector<std::string>& notes) {
         const Vec3 in_plane =
             placed ? Vec3(*s.position - normal * normal.dot(*s.position)) : Vec3(0, 0, 0);
         s.position = in_plane + normal * locations.along[i];
+        s.is_sided = locations.is_sided;
     }
     notes.emplace_back(std::string(placed ? "its slices all have one position"
                                           : "its slices lack a position or an orientation") +
                        ": they were placed by their " + locations.source + ", along their normal");
+}
+
+/// Slices without a place, among others that have different ones, cannot be put anywhere.
+void check_all_placed(const DicomSeries& series) {
+    const auto first = std::ranges::find_if_not(series.slices, is_placed);
+    const auto placed = std::ranges::find_if(series.slices, is_placed);
+    const auto is_elsewhere = [&](const DicomSlice& s) {
+        return is_placed(s) && *s.position != *placed->position;
+    };
+    if (first == series.slices.end() || std::ranges::none_of(series.slices, is_elsewhere)) return;
+    throw Failure("some of its slices have no place, the first in " + quoted(first->file) +
+                  (first->frames > 1 ? " (frame " + std::to_string(first->frame + 1) + ")" : "") +
+                  ", and others do; correct it, or take that slice away");
 }
 
 /// Slices without position or orientation, stacked in the order of their numbers, or moments of
@@ -338,111 +317,7 @@ void pile_up(const DicomSeries& series, const Request& request, Stack& stack) {
                           text_of(stack.geometry.spacing[2]) + " mm apart");
 }
 
-void name_echo(DicomSeries& series) {
-    const double echo = series.slices.front().echo;
-    if (!std::isfinite(echo)) return;
-    for (DicomSlice& s : series.slices) {
-        s.kind += (s.kind.empty() ? "" : ", ") + ("echo time " + text_of(echo)) + " ms";
-    }
-}
-
-bool has_several_at_one_place(const DicomSeries& series) {
-    const std::vector<double> along = places_along(series);
-    const double least = same_place_mm(series);
-    return std::ranges::adjacent_find(along, [&](double a, double b) { return b - a <= least; }) !=
-           along.end();
-}
-
-/// Contrasts (water, fat) apart, where there are several at one place.
-std::vector<DicomSeries> by_contrast(DicomSeries series) {
-    if (!has_several_at_one_place(series)) return {std::move(series)};
-    std::map<std::string, DicomSeries> contrasts;
-    for (DicomSlice& s : series.slices) {
-        DicomSeries& one = contrasts[s.contrast];
-        one.uid = series.uid;
-        s.kind += (s.kind.empty() || s.contrast.empty() ? "" : ", ") + s.contrast;
-        one.slices.push_back(std::move(s));
-    }
-    std::vector<DicomSeries> all;
-    for (auto& [name, one] : contrasts) all.push_back(std::move(one));
-    return all;
-}
-
 }  // namespace
-
-std::vector<DicomSeries> series_of(std::vector<DicomSlice> slices) {
-    std::map<std::string, std::vector<DicomSeries>> sorted;
-    for (DicomSlice& s : slices) {
-        std::vector<DicomSeries>& alike = sorted[key_of(s)];
-        auto series = std::ranges::find_if(
-            alike, [&](const DicomSeries& one) { return are_alike(one.slices.front(), s); });
-        if (series == alike.end()) series = alike.insert(alike.end(), {s.series_uid, {}});
-        series->slices.push_back(std::move(s));
-    }
-    std::vector<DicomSeries> all;
-    for (auto& [key, alike] : sorted) {
-        for (DicomSeries& one : alike) {
-            name_echo(one);
-            std::ranges::move(by_contrast(std::move(one)), std::back_inserter(all));
-        }
-    }
-    return all;
-}
-
-SeriesInfo info_of(const DicomSeries& series) {
-    const DicomSlice& one = series.slices.front();
-    SeriesInfo info;
-    info.uid = one.series_uid;
-    info.patient = one.patient;
-    info.study = one.study;
-    info.description = one.description;
-    info.modality = one.values.modality;
-    info.stack = one.stack;
-    info.slices = static_cast<int>(series.slices.size());
-    info.size = {one.columns, one.rows};
-    if (one.pixel) info.spacing.head<2>() = one.pixel->head<2>();
-    const std::vector<double> along = places_along(series);
-    double gap = 0;
-    for (std::size_t i = 1; i < along.size(); ++i) {
-        const double step = along[i] - along[i - 1];
-        if (step > same_place_mm(series) && (gap == 0 || step < gap)) gap = step;
-    }
-    info.spacing[2] = gap > 0 ? gap : one.thickness;
-    return info;
-}
-
-const DicomSlice& middle_of(const DicomSeries& series) {
-    std::vector<std::pair<double, const DicomSlice*>> order;
-    for (const DicomSlice& s : series.slices) order.emplace_back(place_along(s), &s);
-    const auto middle = order.begin() + static_cast<std::ptrdiff_t>(order.size() / 2);
-    std::nth_element(order.begin(), middle, order.end());
-    return *middle->second;
-}
-
-const DicomSeries& choose_series(const std::vector<DicomSeries>& all, const std::string& chosen) {
-    if (all.size() == 1 && chosen.empty()) return all.front();
-    std::vector<const DicomSeries*> matching;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        if (chosen == std::to_string(i + 1) || chosen == all[i].uid) matching.push_back(&all[i]);
-    }
-    if (matching.size() == 1) return *matching.front();
-    std::string text = chosen.empty()     ? "has " + std::to_string(all.size()) + " DICOM series"
-                       : matching.empty() ? "has no DICOM series '" + chosen + "'"
-                                          : "has several DICOM series '" + chosen + "'";
-    std::vector<SeriesInfo> list;
-    for (const DicomSeries& series : all) {
-        list.push_back(info_of(series));
-        const std::string& kind = series.slices.front().kind;
-        const auto differs = [&](const DicomSeries& other) {
-            return other.uid == series.uid && other.slices.front().kind != kind;
-        };
-        if (std::ranges::any_of(all, differs) && !kind.empty()) {
-            std::string& about = list.back().description;
-            about += (about.empty() ? "" : ", ") + kind;
-        }
-    }
-    throw ChooseSeries(text + "; choose one by its number or UID", std::move(list));
-}
 
 Stack stack_slices(const DicomSeries& series, const Request& request) {
     Stack stack;
@@ -461,8 +336,15 @@ Stack stack_slices(const DicomSeries& series, const Request& request) {
     if (scaled.slices.size() > 1) place_by_location(scaled, stack.notes);
     const bool directed = std::ranges::all_of(
         series.slices, [](const DicomSlice& s) { return s.row && s.column && s.in_patient; });
-    stack.geometry.oriented = directed;
+    const bool sided = std::ranges::all_of(scaled.slices, &DicomSlice::is_sided);
+    stack.geometry.oriented = directed && sided;
+    if (directed && !sided) {
+        stack.notes.emplace_back(
+            "it does not say on which side of each other its slices lie: the volume may be "
+            "mirrored, and is not oriented");
+    }
     if (!std::ranges::all_of(scaled.slices, is_placed)) {
+        check_all_placed(scaled);
         pile_up(scaled, request, stack);
         stack.geometry.size[2] = static_cast<int>(stack.slices.size());
         if (directed) stack.geometry.direction = plane_axes(scaled.slices.front());

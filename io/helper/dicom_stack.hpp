@@ -1,82 +1,10 @@
-// Arranges DICOM slices in a regular grid: sorts them into series and along the normal, finds
+// Arranges the slices of a DICOM series in a regular grid: sorts them along the normal, finds
 // missing ones and shifts between them. Uses no library.
 #pragma once
 
-#include <limits>
-#include <memory>
-
-#include "io/helper/decode.hpp"
+#include "io/helper/dicom_slice.hpp"
 
 namespace palpate::io {
-
-/// What stored numbers mean, from `first` on; those below and above are as the first and last one.
-struct ValueTable {
-    std::int32_t first = 0;
-    std::vector<std::uint16_t> values;
-};
-
-/// What tells moments of one place apart, the most telling first; DimensionIndexValues follow.
-enum DicomKey : std::size_t {
-    file_number,  ///< of files with several frames, InstanceNumber
-    temporal_position,
-    trigger_time,
-    cardiac_phase,
-    reference_time,
-    acquisition_time,
-    content_time,
-    acquisition_number,
-    frame_number,  ///< or InstanceNumber of a file with one
-    first_dimension
-};
-
-/// What the header of one slice says.
-struct DicomSlice {
-    std::filesystem::path file;
-    std::string series_uid, instance_uid, description;
-    std::string patient, study;
-    std::string stack, kind;  ///< stacks of one file; magnitude, phase, echoes, segments ...
-    std::string contrast;     ///< what else may tell images of one place apart: water, fat ...
-    double echo = std::numeric_limits<double>::quiet_NaN();  ///< [ms] EchoTime; NaN: not given
-    ValueInfo values;
-    int rows = 0, columns = 0;
-    int frames = 1, frame = 0;        ///< how many its file has, and which of them it is
-    int instance = 0;                 ///< InstanceNumber of its file
-    int order = 0;                    ///< of the places of the frames of a file
-    std::vector<double> keys;         ///< by DicomKey; NaN or missing where the header does not say
-    std::optional<Vec3> position;     ///< [mm, LPS] centre of the first pixel
-    bool in_patient = true;           ///< or in the space of a transducer
-    std::optional<double> location;   ///< [mm] SliceLocation
-    std::optional<Vec3> row, column;  ///< unit vectors along a row and along a column
-    std::optional<Vec3> pixel;        ///< [mm] between columns, between rows, 0
-    double aspect = 1;                ///< of a pixel, height : width, if its size is not given
-    double between = 0;               ///< [mm] SpacingBetweenSlices; 0 if not given
-    double thickness = 0;             ///< [mm] between slices or of one; 0 if not given
-    double slope = 1, intercept = 0;  ///< of the values [units]
-    bool has_rescale = false;         ///< it gives both of these, or a table
-    bool has_colours = false;
-    bool is_moment = false;  ///< the frames of its file are one place at several times
-    double seconds = 0;      ///< from one of them to the next; 0 if not given
-    std::shared_ptr<const ValueTable> table = {};  ///< of the values; null: slope and intercept
-    std::string compression;         ///< "JPEG 2000", "deflate", ...; empty if there is none
-    std::vector<std::string> notes;  ///< on the file
-};
-
-/// Slices that belong together: one series UID, one stack, one size, one orientation.
-struct DicomSeries {
-    std::string uid;
-    std::vector<DicomSlice> slices;
-};
-/// What there is to know of it before its samples are read.
-SeriesInfo info_of(const DicomSeries& series);
-/// The slice halfway along the normal.
-const DicomSlice& middle_of(const DicomSeries& series);
-
-/// Sorts slices into series, in the order of their UIDs.
-std::vector<DicomSeries> series_of(std::vector<DicomSlice> slices);
-
-/// The series that `chosen` names by number (from 1) or UID, or the only one there is. Otherwise
-/// throws ChooseSeries, without pictures.
-const DicomSeries& choose_series(const std::vector<DicomSeries>& all, const std::string& chosen);
 
 /// One slice and its position.
 struct PlacedSlice {

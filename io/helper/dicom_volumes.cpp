@@ -11,6 +11,7 @@
 
 #include "io/helper/dicom_header.hpp"
 #include "io/helper/dicom_library.hpp"
+#include "io/helper/dicom_series.hpp"
 #include "io/helper/dicom_stack.hpp"
 #include "io/helper/readers.hpp"
 
@@ -319,8 +320,8 @@ std::string numberless(const fs::path& file) {
 }
 
 /// Whether a file that is no DICOM was to be a slice: its name says so, or is that of a slice but
-/// for its numbers, or it is empty and without an extension, as slices are. Passing over such a
-/// file would hide a gap, or make the body too short.
+/// for its numbers, or it is empty or a dangling link, and without an extension, as slices are.
+/// Passing over such a file would hide a gap, or make the body too short.
 void check_others(const std::vector<fs::path>& slices, const std::vector<fs::path>& others) {
     std::set<std::string> names;
     std::set<fs::path> bare;  // folders of slices without an extension
@@ -330,11 +331,19 @@ void check_others(const std::vector<fs::path>& slices, const std::vector<fs::pat
         if (!slice.has_extension()) bare.insert(slice.parent_path());
     }
     for (const fs::path& file : others) {
-        const bool empty = fs::file_size(file) == 0;
+        const bool missing = is_dangling_link(fs::directory_entry(file));
+        const bool empty = !missing && fs::file_size(file) == 0;
         const std::string like = numberless(file);  // a LOCKFILE has no number
         const bool is_bare = !file.has_extension() && bare.contains(file.parent_path()) &&
                              fs::path(like).filename().string().find('#') != std::string::npos;
-        if (!has_dicom_name(file) && !names.contains(like) && !(empty && is_bare)) continue;
+        if (!has_dicom_name(file) && !names.contains(like) && !((empty || missing) && is_bare)) {
+            continue;
+        }
+        if (missing) {
+            throw Failure(quoted(file) +
+                          " is a link to a file that is not there; get that file (git-annex: git "
+                          "annex get), or take the link away");
+        }
         throw Failure(quoted(file) + " " +
                       (empty ? "is empty (0 bytes), though slices have such names; copy it again"
                        : is_gzip(file)
@@ -347,7 +356,7 @@ void check_others(const std::vector<fs::path>& slices, const std::vector<fs::pat
 Result read_folder(const Request& request) {
     std::vector<fs::path> files, others;
     const auto take = [&](const fs::directory_entry& entry) {
-        if (!is_shown_file(entry)) return;
+        if (!is_shown_file(entry) && !is_dangling_link(entry)) return;
         (begins_as_dicom(entry.path()) ? files : others).push_back(entry.path());
     };
     if (has_dicom_index(request.path)) {

@@ -83,6 +83,25 @@ TEST(dicom_folder, an_empty_file_without_a_number_in_its_name_is_no_slice) {
     EXPECT_TRUE(contains(refusal(folder.path()), "'C777' is empty"));
 }
 
+TEST(dicom_folder, a_slice_that_is_a_dangling_link_is_named) {
+    namespace fs = std::filesystem;
+    for (const char* target : {"nowhere", "3.dcm"}) {  // the second is a link to itself
+        const ScratchFolder folder;
+        put_slices(folder, 3);
+        fs::create_symlink("gone", folder / "README");
+        EXPECT_EQ(read_volume(folder.path()).volume.geometry().size[2], 3);
+        fs::create_symlink(target, folder / "3.dcm");
+        const std::string message = refusal(folder.path());
+        EXPECT_TRUE(contains(message, "'3.dcm' is a link to a file that is not there")) << message;
+        for (int i = 0; i < 3; ++i) fs::remove(folder / (std::to_string(i) + ".dcm"));
+        EXPECT_TRUE(contains(refusal(folder.path()), "'3.dcm' is a link")) << "alone";
+    }
+    const ScratchFolder bare;  // slices without an extension
+    for (const int i : {1, 2}) put_slice(bare / ("IM" + std::to_string(i)), slice_number(i));
+    fs::create_symlink("gone", bare / "IM3");
+    EXPECT_TRUE(contains(refusal(bare.path()), "'IM3' is a link")) << refusal(bare.path());
+}
+
 TEST(dicom_folder, a_packed_slice_is_named_as_such_in_a_folder_and_alone) {
     const ScratchFolder folder;
     put_slices(folder, 2);

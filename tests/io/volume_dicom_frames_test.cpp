@@ -41,21 +41,31 @@ std::string groups_of(const TestFrame& frame) {
         content.text(0x20, 0x9057, "UL", little(static_cast<std::uint32_t>(frame.in_stack)));
     }
     content.text(0x20, 0x9128, "UL", little(static_cast<std::uint32_t>(frame.moment)));
-    if (!frame.position.empty()) position.text(0x20, 0x32, "DS", frame.position);
+    std::string places;
+    if (!frame.position.empty()) {
+        position.text(0x20, 0x32, "DS", frame.position);
+        places = sequence(0x20, 0x9113, {position.bytes()});
+    }
     orientation.text(0x20, 0x37, "DS", frame.orientation);
     values.text(0x28, 0x1052, "DS", frame.intercept);
     values.text(0x28, 0x1053, "DS", frame.slope);
     values.text(0x28, 0x1054, "LO", "US");
     type.text(0x08, 0x9007, "CS", frame.type);
     return sequence(0x18, 0x9226, {type.bytes()}) + sequence(0x20, 0x9111, {content.bytes()}) +
-           sequence(0x20, 0x9113, {position.bytes()}) +
-           sequence(0x20, 0x9116, {orientation.bytes()}) + sequence(0x28, 0x9145, {values.bytes()});
+           places + sequence(0x20, 0x9116, {orientation.bytes()}) +
+           sequence(0x28, 0x9145, {values.bytes()});
 }
 
 constexpr int columns = 4, rows = 3;
 
+/// What all frames of a file have in common; nothing where it is empty.
+struct SharedPlace {
+    std::string position, between;
+};
+
 /// Rows 0.5 mm apart, columns 0.78125 mm; `described` of the frames have groups of their own.
-std::string enhanced_bytes(const std::vector<TestFrame>& frames, std::size_t described) {
+std::string enhanced_bytes(const std::vector<TestFrame>& frames, std::size_t described,
+                           const SharedPlace& shared = {}) {
     TestSlice head;
     head.kind = enhanced_mr;
     DicomBytes data, measures;
@@ -73,6 +83,7 @@ std::string enhanced_bytes(const std::vector<TestFrame>& frames, std::size_t des
     data.number(0x28, 0x102, 15);
     data.number(0x28, 0x103, 0);
     measures.text(0x18, 0x50, "DS", "5");
+    if (!shared.between.empty()) measures.text(0x18, 0x88, "DS", shared.between);
     measures.text(0x28, 0x30, "DS", "0.5\\0.78125");
     std::vector<std::string> own;
     std::string pixels;
@@ -82,11 +93,16 @@ std::string enhanced_bytes(const std::vector<TestFrame>& frames, std::size_t des
             pixels += little(static_cast<std::uint16_t>(frame.value + i));
         }
     }
+    std::string groups = sequence(0x28, 0x9110, {measures.bytes()});
+    if (!shared.position.empty()) {
+        DicomBytes position;
+        position.text(0x20, 0x32, "DS", shared.position);
+        groups = sequence(0x20, 0x9113, {position.bytes()}) + groups;
+    }
     DicomBytes pixel_data;
     pixel_data.long_value(0x7fe0, 0x10, "OW", pixels);
     return dicom_start(head, "1.2.840.10008.1.2.1") + data.bytes() +
-           sequence(0x5200, 0x9229, {sequence(0x28, 0x9110, {measures.bytes()})}) +
-           sequence(0x5200, 0x9230, own) + pixel_data.bytes();
+           sequence(0x5200, 0x9229, {groups}) + sequence(0x5200, 0x9230, own) + pixel_data.bytes();
 }
 
 class dicom_frames : public testing::Test {
@@ -205,6 +221,58 @@ TEST_F(dicom_frames, without_a_position_are_in_the_order_of_their_numbers_in_the
     EXPECT_TRUE(contains(refused({frame(2, 2), frame(1, 1), frame(1, 2)}), "same place"));
 }
 
+TEST_F(dicom_frames, with_one_position_for_all_lie_one_behind_the_other) {
+    for (const bool numbered : {true, false}) {
+        for (const bool shared : {true, false}) {
+            std::vector<TestFrame> frames;
+            for (const int i : {1, 0, 2, 3}) {
+                frames.push_back(at(3, 100 * i));
+                if (shared) frames.back().position.clear();
+                if (numbered) frames.back().in_stack = i + 1;
+            }
+            const SharedPlace place{shared ? "-10\\20\\3" : "", "2.5"};
+            put_bytes(file_, enhanced_bytes(frames, 4, place));
+            const VolumeFile file = read_volume(file_);
+            if (numbered) {
+                expect_first_pixels(file, {0, 100, 200, 300});
+            } else {
+                expect_first_pixels(file, {100, 0, 200, 300});
+            }
+            EXPECT_EQ(file.time_steps, 1);
+            EXPECT_EQ(file.volume.geometry().spacing[2], 2.5);
+            EXPECT_EQ(file.volume.geometry().origin, Vec3(-10, 20, 3));
+            EXPECT_FALSE(file.volume.geometry().oriented);
+            EXPECT_TRUE(contains(all_notes(file), "frames all have one position"));
+        }
+    }
+}
+
+TEST_F(dicom_frames, of_one_position_that_differ_in_time_are_moments) {
+    std::vector<TestFrame> frames;
+    for (const int moment : {2, 1, 3}) {
+        frames.push_back(at(3, 100 * moment));
+        frames.back().moment = moment;
+        frames.back().in_stack = 1;
+    }
+    for (const bool numbered_on : {true, false}) {
+        put_bytes(file_, enhanced_bytes(frames, 3, {"", "2.5"}));
+        ReadOptions last;
+        last.time_step = 2;
+        const VolumeFile file = read_volume(file_, last);
+        EXPECT_EQ(file.time_steps, 3) << numbered_on;
+        expect_first_pixels(file, {300});
+        for (TestFrame& frame : frames) frame.in_stack = frame.moment;  // as some writers do
+    }
+}
+
+TEST_F(dicom_frames, without_a_position_among_others_are_refused_by_number) {
+    std::vector<TestFrame> frames{at(0, 1), at(5, 2), at(10, 3)};
+    frames[1].position.clear();
+    const std::string message = refused(frames);
+    EXPECT_TRUE(one_line_about(message, file_)) << message;
+    EXPECT_TRUE(contains(message, "'frames.dcm' (frame 2)")) << message;
+}
+
 TEST_F(dicom_frames, of_other_kinds_are_not_mixed) {
     std::vector<TestFrame> frames{at(0, 1), at(5, 2), at(0, 3), at(5, 4)};
     frames[2].type = frames[3].type = "ORIGINAL\\PRIMARY\\P";
@@ -283,6 +351,21 @@ TEST_F(dicom_frames, that_are_counted_by_time_are_a_sequence_and_no_stack) {
         EXPECT_EQ(file.volume.sample({0, 0, 0}), 100 + 4 * 12);
         EXPECT_TRUE(contains(all_notes(file), "are moments of one slice")) << all_notes(file);
     }
+}
+
+TEST_F(dicom_frames, with_a_time_and_a_distance_between_them_are_a_stack) {
+    DicomBytes both;
+    both.text(0x18, 0x88, "DS", "3");
+    both.text(0x18, 0x1063, "DS", "40");
+    std::string bytes = dicom_bytes(plain_frames(4));
+    bytes.insert(bytes.find(little(std::uint16_t{0x20}) + little(std::uint16_t{0xd})),
+                 both.bytes());
+    put_bytes(file_, bytes);
+    const VolumeFile file = read_volume(file_);
+    EXPECT_EQ(file.time_steps, 1);
+    EXPECT_EQ(file.volume.geometry().spacing[2], 3);
+    expect_first_pixels(file, {100, 112, 124, 136});
+    EXPECT_TRUE(contains(all_notes(file), "a distance and a time")) << all_notes(file);
 }
 
 TEST_F(dicom_frames, of_a_dose_lie_at_their_offsets) {

@@ -1,77 +1,11 @@
 // What the numbers in DICOM files mean, and files that are written in unusual ways: display that is
 // inverted, tables of values, lengths of odd types, padding, no preamble, discs with an index.
 #include <algorithm>
-#include <cstring>
-#include <functional>
 
-#include "volume_dicom_slice.hpp"
+#include "volume_dicom_changed.hpp"
 
 namespace palpate::io::test {
 namespace {
-
-TestSlice slice_at(int number) {
-    TestSlice slice;
-    slice.number = number;
-    slice.position = "10\\20\\" + std::to_string(2 * number);
-    return slice;
-}
-
-std::string tag_bytes(std::uint16_t group, std::uint16_t element) {
-    return little(group) + little(element);
-}
-
-std::string element(std::uint16_t group, std::uint16_t element, const char* vr,
-                    const std::string& value) {
-    DicomBytes one;
-    one.text(group, element, vr, value);
-    return one.bytes();
-}
-
-std::string long_element(std::uint16_t group, std::uint16_t element, const char* vr,
-                         const std::string& value) {
-    DicomBytes one;
-    one.long_value(group, element, vr, value);
-    return one.bytes();
-}
-
-/// The data set with `what` before the element of this tag.
-std::string with(std::string data, std::uint16_t group, std::uint16_t element,
-                 const std::string& what) {
-    return data.insert(data.find(tag_bytes(group, element)), what);
-}
-
-/// Without an element of a short type.
-std::string without(std::string data, std::uint16_t group, std::uint16_t element) {
-    const std::size_t at = data.find(tag_bytes(group, element));
-    std::uint16_t length = 0;
-    std::memcpy(&length, data.data() + at + 6, 2);
-    return data.erase(at, 8 + length);
-}
-
-std::string file_of(const TestSlice& slice, const std::string& data) {
-    return dicom_start(slice, "1.2.840.10008.1.2.1") + data;
-}
-
-/// Four slices, each changed.
-VolumeFile read_changed(const ScratchFolder& folder,
-                        const std::function<std::string(const TestSlice&)>& change) {
-    for (int i = 0; i < 4; ++i) {
-        put_bytes(folder / (std::to_string(i) + ".dcm"), change(slice_at(i)));
-    }
-    return read_volume(folder.path());
-}
-
-void expect_usual(const VolumeFile& file) {
-    const Geometry& g = file.volume.geometry();
-    ASSERT_EQ(g.size, Index3(4, 3, 4));
-    EXPECT_EQ(g.spacing, Vec3(0.25, 0.5, 2));
-    EXPECT_EQ(g.origin, Vec3(10, 20, 0));
-    EXPECT_EQ(file.volume.type(), SampleType::uint16);
-    for (int z = 0; z < 4; ++z) {
-        EXPECT_EQ(file.volume.sample({0, 0, z}), 100 * z);
-        EXPECT_EQ(file.volume.sample({3, 2, z}), 100 * z + 11);
-    }
-}
 
 TEST(dicom, inverted_display_leaves_the_values_and_is_said) {
     const ScratchFolder folder;
@@ -175,11 +109,11 @@ TEST(dicom, padding_after_the_last_element_is_passed_over) {
     expect_usual(file);
     EXPECT_TRUE(contains(all_notes(file), "13 bytes of 255 after its last element"));
     const ScratchFolder folder;
-    put_bytes(folder / "1.dcm", dicom_bytes(slice_at(1)) + std::string(64, '\0') + "x");
+    put_bytes(folder / "1.dcm", dicom_bytes(usual_slice(1)) + std::string(64, '\0') + "x");
     EXPECT_TRUE(contains(refusal(folder / "1.dcm"), "damaged"));
     // Elements of no length, in implicit little endian; looked at once, not once for each.
     put_bytes(folder / "1.dcm",
-              dicom_start(slice_at(1), "1.2.840.10008.1.2") + std::string(8 << 20, '\0') + "x");
+              dicom_start(usual_slice(1), "1.2.840.10008.1.2") + std::string(8 << 20, '\0') + "x");
     EXPECT_TRUE(contains(refusal(folder / "1.dcm"), "cut off"));
 }
 
@@ -211,9 +145,9 @@ TEST(dicom, elements_whose_type_is_question_marks_or_zeros_are_read) {
         }
     }
     const ScratchFolder folder;
-    std::string data = dicom_data_set(slice_at(1));
+    std::string data = dicom_data_set(usual_slice(1));
     data.replace(data.find(tag_bytes(0x20, 0x32)) + 4, 4, "??\7\7");
-    put_bytes(folder / "1.dcm", file_of(slice_at(1), data));
+    put_bytes(folder / "1.dcm", file_of(usual_slice(1), data));
     EXPECT_TRUE(contains(refusal(folder / "1.dcm"), "whose length is not sure"));
 }
 
@@ -269,7 +203,7 @@ TEST(dicom, a_number_with_a_comma_is_refused_with_its_slice_and_tag) {
              {[](TestSlice& s) { s.intercept = "0\\5"; }, "RescaleIntercept has 2 numbers"}}) {
         const ScratchFolder folder;
         for (int i = 0; i < 3; ++i) {
-            TestSlice slice = slice_at(i);
+            TestSlice slice = usual_slice(i);
             if (i == 1) change(slice);
             put_slice(folder / (std::to_string(i) + ".dcm"), slice);
         }
@@ -283,7 +217,7 @@ TEST(dicom_folder, a_disc_with_an_index_has_its_slices_in_folders_of_folders) {
     const ScratchFolder folder;
     std::filesystem::create_directories(folder / "DICOM/PAT1/SER1");
     for (int i = 0; i < 4; ++i) {
-        put_slice(folder / ("DICOM/PAT1/SER1/IM" + std::to_string(i)), slice_at(i));
+        put_slice(folder / ("DICOM/PAT1/SER1/IM" + std::to_string(i)), usual_slice(i));
     }
     TestSlice index;
     index.kind = "1.2.840.10008.1.3.10";
