@@ -34,7 +34,13 @@ bool is_hidden(const fs::path& file) {
 }
 
 bool is_shown_file(const fs::directory_entry& entry) {
-    return entry.is_regular_file() && !is_hidden(entry.path());
+    std::error_code error;  // of a link to itself
+    return entry.is_regular_file(error) && !is_hidden(entry.path());
+}
+
+bool is_broken_link(const fs::directory_entry& entry) {
+    std::error_code error;
+    return entry.is_symlink(error) && !is_hidden(entry.path()) && !entry.exists(error);
 }
 
 bool begins_as_dicom(const fs::path& file) {
@@ -60,7 +66,7 @@ bool has_dicom_name(const fs::path& file) {
 
 bool has_dicom_index(const fs::path& folder) {
     for (const auto& entry : fs::directory_iterator(folder)) {
-        if (entry.is_regular_file() && lower(entry.path().filename().string()) == "dicomdir") {
+        if (is_shown_file(entry) && lower(entry.path().filename().string()) == "dicomdir") {
             return true;
         }
     }
