@@ -39,7 +39,8 @@ struct DataPlace {
     enum class Encoding { raw, compressed, text } encoding = Encoding::raw;
     /// What may follow the samples: VTK's arrays begin with a word, FreeSurfer's tags are numbers.
     enum class Footer { none, words, tags } footer = Footer::none;
-    bool swapped = false;  ///< the bytes of a sample are in the other order than the machine's
+    bool is_at_end = false;  ///< compressed samples are the last bytes of what is unpacked
+    bool swapped = false;    ///< the bytes of a sample are in the other order than the machine's
 };
 
 /// All that reading the samples of one volume takes.

@@ -38,9 +38,11 @@ Geometry grid_of(Bytes header, std::vector<std::string>& notes) {
     }
     if (big_endian<std::int16_t>(header.subspan(28)) <= 0) {
         g.oriented = g.measured = false;
+        g.direction << 1, 0, 0, 0, 0, -1, 0, -1, 0;
+        g.origin = -0.5 * (g.direction * g.size.cast<double>());
         notes.emplace_back(
             "its header does not give its place (goodRASFlag): 1 mm was taken along every axis, "
-            "and its axes as those of LPS");
+            "and coronal slices around the origin, as FreeSurfer does");
         return g;
     }
     const Vec3 to_lps(-1, -1, 1);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <map>
 
 #include "io/byte_order.hpp"
@@ -187,7 +188,10 @@ Transform qform_of(const Header& header, double unit, std::vector<std::string>& 
     if (!(square <= 1.002)) {
         throw Failure("its header field 'quatern' is no rotation; correct the header");
     }
-    const Eigen::Quaterniond rotation(std::sqrt(std::max(0.0, 1 - square)), vector[0], vector[1],
+    // What rounding leaves of a half turn is 0, within nibabel's limit: its root would be an angle.
+    constexpr double rounding = 3 * std::numeric_limits<float>::epsilon();
+    const double rest = 1 - square;
+    const Eigen::Quaterniond rotation(rest < rounding ? 0 : std::sqrt(rest), vector[0], vector[1],
                                       vector[2]);
     const double handed = header.real(pixdim) < 0 ? -1 : 1;
     Transform ras;

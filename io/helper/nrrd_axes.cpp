@@ -375,8 +375,8 @@ SpaceVector origin_of(const HeaderFields& fields, const Space& space) {
     return vector_in(next_vector(fields.value(field), at, field), space, field);
 }
 
-Geometry geometry_of(const HeaderFields& fields, const Space& space, const SpaceVector& origin,
-                     std::vector<Axis>& spatial, std::vector<std::string>& notes) {
+Geometry geometry_of(const Space& space, const SpaceVector& origin, std::vector<Axis>& spatial,
+                     std::vector<std::string>& notes) {
     Geometry g;
     g.size = Index3::Ones();
     for (std::size_t a = 0; a < spatial.size(); ++a) {
@@ -391,9 +391,7 @@ Geometry geometry_of(const HeaderFields& fields, const Space& space, const Space
         }
         if (space.dimension == 0) {
             complete(axis, notes);
-            if (fields.has("spacings")) {
-                check_spacing(axis.spacing.value_or(std::nan("")), "header field 'spacings'");
-            }
+            if (axis.spacing) check_spacing(*axis.spacing, "header field 'spacings'");
             g.spacing[i] = axis.spacing.value_or(1);
             g.origin[i] = first_of(axis);
         } else if (!axis.unit.empty() && lower(axis.unit) != "mm") {
@@ -427,7 +425,7 @@ void take_axes(const HeaderFields& fields, VolumeHeader& header) {
     check_dimensions(space, spatial);
     const SpaceVector origin = origin_of(fields, space);
     take_steps(space, origin, spatial, header);
-    header.geometry = geometry_of(fields, space, origin, spatial, header.notes);
+    header.geometry = geometry_of(space, origin, spatial, header.notes);
 }
 
 }  // namespace palpate::io

@@ -151,7 +151,11 @@ void apply_skips(const HeaderFields& fields, std::uint64_t bytes, DataPlace& pla
         place.offset = static_cast<std::uint64_t>(in.tellg());
     }
     if (skip > 0) place.skip = static_cast<std::uint64_t>(skip);
-    if (skip == -1) put_at_end(place, bytes, "byte skip");
+    if (skip == -1 && place.encoding == DataPlace::Encoding::compressed) {
+        place.is_at_end = true;
+    } else if (skip == -1) {
+        put_at_end(place, bytes, "byte skip");
+    }
 }
 
 /// Samples of more than one byte must say their order, but for text.

@@ -18,18 +18,22 @@ bool is_digit(char c) {
     return std::isdigit(static_cast<unsigned char>(c)) != 0;
 }
 
-/// A number in a name, as text ("007", "2.5"), or the text between two numbers.
+/// A number in a name, as text ("007", "2.5", "-3"), or the text between two numbers.
 struct NamePart {
     std::string text;
     bool is_number = false;
 
+    bool is_negative() const { return is_number && text.front() == '-'; }
+
     bool operator==(const NamePart&) const = default;
 };
 
-/// 2 before 10, 1.25 before 1.5, numbers before text.
+/// -1 before 2 before 10, 1.25 before 1.5, numbers before text.
 bool is_before(const NamePart& a, const NamePart& b) {
     if (a.is_number != b.is_number) return a.is_number;
     if (!a.is_number) return a.text < b.text;
+    if (a.is_negative() != b.is_negative()) return a.is_negative();
+    if (a.is_negative()) return is_before({b.text.substr(1), true}, {a.text.substr(1), true});
     const auto whole = [](const std::string& text) {
         const auto begin = std::min(text.find_first_not_of('0'), text.size());
         const auto end = std::min(text.find('.'), text.size());
@@ -80,6 +84,30 @@ bool comes_before(const NamedFile& a, const NamedFile& b) {
     return !std::ranges::lexicographical_compare(b.name, a.name, is_before) && a.path < b.path;
 }
 
+/// A hyphen before a number is a sign if it is missing in other files: z-1, z0, z1. In z-1, z-2 it
+/// only separates.
+void find_signs(std::vector<NamedFile>& files) {
+    const auto text_at = [](const NamedFile& file, std::size_t p) {
+        const bool leads = p + 1 < file.name.size() && !file.name[p].is_number;
+        return leads ? file.name[p].text : std::string();
+    };
+    for (std::size_t p = 0; p < files.front().name.size(); ++p) {
+        const auto shortest = std::ranges::min_element(
+            files, {}, [&](const NamedFile& file) { return text_at(file, p).size(); });
+        const std::string plain = text_at(*shortest, p);
+        const auto is_like = [&](const NamedFile& file) {
+            const std::string text = text_at(file, p);
+            return text == plain || text == plain + "-";
+        };
+        if (plain.empty() || !std::ranges::all_of(files, is_like)) continue;
+        for (NamedFile& file : files) {
+            if (file.name[p].text == plain) continue;
+            file.name[p].text = plain;
+            file.name[p + 1].text.insert(0, "-");
+        }
+    }
+}
+
 /// The quantity that a number counts.
 enum class Counts { slices, channels, times, unknown };
 
@@ -107,9 +135,15 @@ struct Field {
     Counts counts = Counts::unknown;
     std::vector<NamePart> values;  ///< in their order, each once
 
-    bool is_of_slices() const { return counts == Counts::slices; }
     bool is_of_others() const { return counts == Counts::channels || counts == Counts::times; }
 };
+
+/// Orders files by the value that each has in a field.
+auto by_value_of(const Field& field) {
+    return [part = field.part](const NamedFile& a, const NamedFile& b) {
+        return is_before(a.name[part], b.name[part]);
+    };
+}
 
 /// Empty if the names are not alike: if some have more parts than others, or text in place of a
 /// number.
@@ -195,8 +229,28 @@ void check_missing(long missing) {
                   " missing; copy the missing slices, or number the others without a gap");
 }
 
-/// All files, in the order of their names.
-NumberedSlices one_stack(const std::vector<NamedFile>& files, const std::vector<Field>& fields) {
+/// The numbers that may count slices among those that differ in every file: those that are marked
+/// as slices, or else those without a mark, or else those that are marked as something else.
+std::vector<Field> counting_slices(const std::vector<Field>& fields, std::size_t files,
+                                   const Name& name) {
+    std::map<int, std::vector<Field>> found;  // by rank
+    for (const Field& field : fields) {
+        if (field.values.size() != files || !name[field.part].is_number) continue;
+        const int rank = field.counts == Counts::slices ? 0 : field.is_of_others() ? 2 : 1;
+        found[rank].push_back(field);
+    }
+    return found.empty() ? std::vector<Field>{} : found.begin()->second;
+}
+
+/// All files, in the order of the numbers that count slices. Without any, in that of their names.
+NumberedSlices one_stack(std::vector<NamedFile> files, const std::vector<Field>& fields) {
+    const std::vector<Field> counting = counting_slices(fields, files.size(), files.front().name);
+    for (const Field& field : counting) {
+        if (&field == &counting.front()) std::ranges::sort(files, by_value_of(field));
+        if (!std::ranges::is_sorted(files, by_value_of(field))) {
+            fail_unclear(counting, files.front().name);
+        }
+    }
     NumberedSlices slices;
     slices.times.emplace_back();
     for (const NamedFile& file : files) slices.times[0].push_back(file.path);
@@ -206,8 +260,7 @@ NumberedSlices one_stack(const std::vector<NamedFile>& files, const std::vector<
             "names");
     }
     std::optional<long> missing;  // of numbers that go together, one may be a time of day
-    for (const Field& field : fields) {
-        if (field.values.size() != files.size()) continue;
+    for (const Field& field : counting) {
         missing = std::min(missing.value_or(missing_in(field)), missing_in(field));
     }
     check_missing(missing.value_or(0));
@@ -246,9 +299,7 @@ NumberedSlices first_channel(std::vector<NamedFile> files, const std::vector<Fie
                                "their own");
     }
     const Field& z = roles.at(Counts::slices);
-    std::ranges::stable_sort(files, [&](const NamedFile& a, const NamedFile& b) {
-        return is_before(a.name[z.part], b.name[z.part]);
-    });
+    std::ranges::stable_sort(files, by_value_of(z));
     slices.times.resize(times == roles.end() ? 1 : times->second.values.size());
     for (const NamedFile& file : files) {
         std::size_t time = 0;
@@ -271,17 +322,21 @@ NumberedSlices numbered_slices(std::vector<fs::path> paths) {
         Name name = parts_of(path);
         files.push_back({std::move(path), std::move(name)});
     }
+    find_signs(files);
     std::ranges::sort(files, comes_before);
     const std::vector<Field> fields = fields_of(files);
     std::vector<Field> shared;  // with values that several files have
     bool told = fields.empty();
     for (const Field& field : fields) {
-        if (field.values.size() != files.size()) shared.push_back(field);
-        told |= field.values.size() == files.size() && field.is_of_slices();
+        const bool is_unique = field.values.size() == files.size();
+        if (!is_unique) shared.push_back(field);
+        told |= is_unique && field.counts == Counts::slices;
     }
-    const bool others = std::ranges::any_of(shared, &Field::is_of_others);
-    const bool alone = shared.size() < fields.size() && !others;
-    return told || alone ? one_stack(files, fields) : first_channel(std::move(files), shared);
+    const bool marked = std::ranges::any_of(
+        shared, [](const Field& field) { return field.counts != Counts::unknown; });
+    const bool alone = shared.size() < fields.size() && !marked;
+    return told || alone ? one_stack(std::move(files), fields)
+                         : first_channel(std::move(files), shared);
 }
 
 }  // namespace palpate::io

@@ -15,10 +15,11 @@ struct NumberedSlices {
     std::vector<std::string> notes;
 };
 
-/// One number may differ from name to name, or several that go together: it counts slices. If more
-/// are needed to tell the files apart, each is known by the letters before it (z, slice; c, ch,
-/// channel; t, time), one without counts slices, and the first channel is taken, with a note.
-/// Throws Failure if that leaves a doubt, or if files are missing.
+/// A number that differs from name to name counts slices. Among several, those are taken that the
+/// letters before them mark as slices, or else those without a mark: they have to give the same
+/// order. If several numbers are needed to tell the files apart, each is known by the letters
+/// before it (z, slice; c, ch, channel; t, time), one without counts slices, and the first channel
+/// is taken, with a note. Throws Failure if that leaves a doubt, or if files are missing.
 NumberedSlices numbered_slices(std::vector<std::filesystem::path> files);
 
 }  // namespace palpate::io

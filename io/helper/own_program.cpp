@@ -54,9 +54,12 @@ const char* program_for_folder(const fs::path& folder) {
     bool folders = false, has_names = false;
     std::vector<std::string> volumes;
     for (const auto& entry : fs::directory_iterator(folder)) {
-        std::error_code error;  // of links that lead nowhere
+        std::error_code error;  // of a link to itself
         folders |= entry.is_directory(error);
-        if (is_dangling_link(entry)) has_names |= has_dicom_name(entry.path());
+        if (is_broken_link(entry)) {  // of a slice that the other program names
+            has_names = has_names || has_dicom_name(entry.path());
+            tiffs += dicoms == 0 && tiffs < 2 && is_tiff_name(entry.path());
+        }
         if (!is_shown_file(entry)) continue;
         if (names_a_volume(entry.path())) volumes.push_back(entry.path().filename().string());
         // Not every one of ten thousand has to be looked into.

@@ -17,6 +17,7 @@ namespace palpate::io {
 namespace {
 
 constexpr std::uint64_t padding_allowed = 4096, longest_footer = 1 << 20;
+constexpr std::uint64_t most_before_end = 1 << 26;
 constexpr std::size_t chunk_bytes = 1 << 20;
 constexpr int longest_word = 512;  // a double has up to some 320 digits
 
@@ -243,7 +244,15 @@ void read_raw_bytes(VolumeHeader& header, const DataPlace& place, const ByteSink
     }
 }
 
-void read_compressed(VolumeHeader& header, const DataPlace& place, const ByteSink& sink) {
+/// Bytes before the samples if these are the end of what is unpacked, which is then unpacked twice.
+std::uint64_t bytes_before_end(const VolumeHeader& header, const DataPlace& place) {
+    const std::uint64_t at_most = most_before_end + header.bytes_each();
+    const std::uint64_t all =
+        inflate_checked(place.file, {place.offset, place.length, at_most}, {});
+    return all - std::min(header.bytes_each(), all);
+}
+
+void read_compressed(VolumeHeader& header, DataPlace& place, const ByteSink& sink) {
     const std::uint64_t available = available_at(place);
     if (place.length != UINT64_MAX) {
         compare(available, place.length, "compressed bytes", padding_allowed, header.notes);
@@ -253,9 +262,10 @@ void read_compressed(VolumeHeader& header, const DataPlace& place, const ByteSin
             "its header says that its samples are compressed, but they do not begin as gzip's or "
             "zlib's do; correct the header, or copy it again");
     }
-    SampleBytes samples(header, place, sink);
     std::uint64_t unpacked = 0;
     try {
+        if (place.is_at_end) place.skip = bytes_before_end(header, place);
+        SampleBytes samples(header, place, sink);
         const bool has_tags = place.footer == DataPlace::Footer::tags;
         const std::uint64_t behind =
             has_tags ? std::max(header.bytes_each(), longest_footer) : padding_allowed;

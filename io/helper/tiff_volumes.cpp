@@ -256,7 +256,12 @@ Result read_file(const Request& request) {
 Result read_folder(const Request& request) {
     std::vector<fs::path> files;
     for (const auto& entry : fs::directory_iterator(request.path)) {
-        if (is_shown_file(entry) && is_tiff_name(entry.path())) files.push_back(entry.path());
+        if (!is_tiff_name(entry.path())) continue;
+        if (is_broken_link(entry)) {
+            throw Failure(quoted(entry.path()) +
+                          " is a link that leads to no file; get its file, or take the link away");
+        }
+        if (is_shown_file(entry)) files.push_back(entry.path());
     }
     const NumberedSlices numbered = numbered_slices(std::move(files));
     const auto times = static_cast<std::int64_t>(numbered.times.size());

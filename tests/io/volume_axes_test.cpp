@@ -123,13 +123,32 @@ TEST(nrrd, what_is_ignored_is_said) {
         "spacings were taken"));
 }
 
-TEST(nrrd, a_byte_skip_from_the_end_is_for_raw_samples_only) {
+TEST(nrrd, a_spacing_that_is_not_a_number_is_not_known) {
+    const ScratchFolder folder;
+    const VolumeFile one = read_nrrd(folder, "spacings: 2 3 nan\n");
+    EXPECT_EQ(one.volume.geometry().spacing, Vec3(2, 3, 1));
+    EXPECT_FALSE(one.volume.geometry().measured);
+    EXPECT_TRUE(contains(all_notes(one), "1 mm was taken")) << all_notes(one);
+    const VolumeFile none = read_nrrd(folder, "spacings: NaN NaN NaN\n");
+    EXPECT_EQ(none.volume.geometry().spacing, Vec3(1, 1, 1));
+    EXPECT_FALSE(none.volume.geometry().measured);
+}
+
+TEST(nrrd, a_byte_skip_from_the_end_is_for_samples_that_are_no_text) {
     const ScratchFolder folder;
     const std::string head = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 3 4\nbyte skip: -1\n";
     std::string samples;
     for (char i = 0; i < 24; ++i) samples += i;
-    put_gzip(folder / "packed.gz", "header" + samples);
+    put_gzip(folder / "packed.gz", std::string(10000, 'h') + samples);
     put_bytes(folder / "a.nhdr", head + "encoding: gzip\ndata file: packed.gz\n");
+    const VolumeFile packed = read_volume(folder / "a.nhdr");
+    for (int i = 0; i < 24; ++i) EXPECT_EQ(packed.volume.sample({i % 2, i / 2 % 3, i / 6}), i);
+    EXPECT_EQ(all_notes(packed).find("bytes"), std::string::npos) << all_notes(packed);
+    put_gzip(folder / "packed.gz", samples.substr(5));
+    EXPECT_TRUE(contains(refusal(folder / "a.nhdr"), "cut off")) << refusal(folder / "a.nhdr");
+    put_gzip(folder / "packed.gz", std::string((1 << 26) + 1, 'h') + samples);
+    EXPECT_TRUE(contains(refusal(folder / "a.nhdr"), "unpacks to more"));
+    put_bytes(folder / "a.nhdr", head + "encoding: text\ndata file: plain\n");
     EXPECT_TRUE(contains(refusal(folder / "a.nhdr"), "byte skip of -1"));
     put_bytes(folder / "plain", "header" + samples);
     put_bytes(folder / "a.nhdr", head + "encoding: raw\ndata file: plain\n");
@@ -153,6 +172,30 @@ TEST(meta_image, units_scale_spacing_and_origin) {
         EXPECT_TRUE(g.spacing.isApprox(mm * Vec3(2, 3, 4), 1e-12)) << unit;
         EXPECT_TRUE(g.origin.isApprox(mm * Vec3(5, 6, 7), 1e-12)) << unit;
         EXPECT_EQ(contains(all_notes(file), "converted to mm"), mm != 1);
+    }
+}
+
+TEST(meta_image, sides_that_contradict_the_axes_are_noted) {
+    const ScratchFolder folder;
+    const auto read = [&](const std::string& matrix, const std::string& sides) {
+        return read_text(folder, "a.mha",
+                         "NDims = 3\nDimSize = 2 3 4\nElementType = MET_UCHAR\n"
+                         "ElementSpacing = 1 1 1\nTransformMatrix = " +
+                             matrix + "\nAnatomicalOrientation = " + sides +
+                             "\nElementDataFile = LOCAL\n");
+    };
+    const std::pair<const char*, const char*> fitting[] = {{"1 0 0 0 1 0 0 0 1", "RAI"},
+                                                           {"-1 0 0 0 -1 0 0 0 1", "LPI"},
+                                                           {"0 1 0 0 0 -1 -1 0 0", "ASL"},
+                                                           {"0.8 0.6 0 -0.6 0.8 0 0 0 1", "RAI"},
+                                                           {"-1 0 0 0 -1 0 0 0 1", "???"}};
+    for (const auto& [matrix, sides] : fitting) {
+        EXPECT_FALSE(contains(all_notes(read(matrix, sides)), "contradicts")) << sides;
+    }
+    for (const char* sides : {"LPI", "RAS", "ARI"}) {
+        const VolumeFile file = read("1 0 0 0 1 0 0 0 1", sides);
+        EXPECT_TRUE(contains(all_notes(file), "contradicts its axes")) << sides;
+        EXPECT_EQ(file.volume.geometry().direction, Mat3::Identity());
     }
 }
 

@@ -100,8 +100,10 @@ TEST(hostile_file, lengths_beyond_sense_are_refused_in_every_format) {
     for (const char* number : {"3e38", "-3e38", "1e300", "1e-300", "nan", "inf"}) {
         const std::string n = number;
         const std::string nrrd = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 3 4\n";
-        refusal_of_bytes(folder / "a.nrrd",
-                         nrrd + "spacings: 1 " + n + " 1\nencoding: raw\n\n" + data);
+        if (n != "nan") {  // not known, as the format has it
+            refusal_of_bytes(folder / "a.nrrd",
+                             nrrd + "spacings: 1 " + n + " 1\nencoding: raw\n\n" + data);
+        }
         refusal_of_bytes(folder / "a.nrrd", nrrd + "space: LPS\nspace directions: (1,0,0) (0," + n +
                                                 ",0) (0,0,1)\nencoding: raw\n\n" + data);
         const std::string meta = "NDims = 3\nDimSize = 2 3 4\nElementType = MET_UCHAR\n";

@@ -224,6 +224,26 @@ TEST(nifti, a_sheared_sform_gives_way_to_the_qform_or_is_refused) {
     EXPECT_TRUE(contains(refusal(folder / "a.nii"), "sheared"));
 }
 
+/// Half turns around axes whose numbers are rounded in the header.
+TEST(nifti, a_half_turn_is_none_of_another_angle) {
+    const ScratchFolder folder;
+    std::mt19937 random(5);
+    for (int i = 0; i < 40; ++i) {
+        Vec3 axis(uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1));
+        if (i == 0) axis = Vec3(1, 1, 0);
+        axis.normalize();
+        const VolumeFile file = read_nifti(folder, nifti([&](std::string& h) {
+                                               for (Eigen::Index a = 0; a < 3; ++a) {
+                                                   put_at(h, 256 + 4 * std::size_t(a),
+                                                          little(static_cast<float>(axis[a])));
+                                               }
+                                           }));
+        const Mat3 turn = 2 * axis * axis.transpose() - Mat3::Identity();
+        const Mat3 expected = Vec3(-1, -1, 1).asDiagonal() * turn;
+        EXPECT_LT((file.volume.geometry().direction - expected).cwiseAbs().maxCoeff(), 1e-6) << i;
+    }
+}
+
 TEST(nifti, a_quaternion_and_its_handedness_place_the_axes) {
     const ScratchFolder folder;
     for (const float handed : {1.0F, 0.0F, -1.0F}) {

@@ -367,6 +367,10 @@ def test_an_mgh_without_a_place_is_noted_and_a_damaged_one_refused(tmp_path):
     path.write_bytes(whole[:28] + bytes(2) + whole[30:])
     geometry = noted(path, "goodRASFlag").geometry
     assert not geometry.oriented and numpy.array_equal(geometry.spacing, (1, 1, 1))
+    coronal = numpy.array([[-1, 0, 0], [0, 0, 1], [0, -1, 0]])  # FreeSurfer's default: left, inferior, anterior
+    for index in ((0, 0, 0), (5, 3, 4)):
+        x, y, z = coronal @ (numpy.array(index) - geometry.size / 2)
+        assert numpy.allclose(geometry.physical(index), (-x, -y, z))
     path.write_bytes(b"\0\0\2\1" + whole[4:])  # FreeSurfer 7.3: version 1 with the intent 2
     assert palpate.load(path).volume.geometry.oriented
     for damaged, words in ((whole[:400], "cut off"), (whole[:200], "no MGH file"), (b"\0\0\0\2" + whole[4:], "no MGH file"),
