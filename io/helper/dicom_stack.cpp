@@ -100,9 +100,10 @@ Steps steps_of(Stack& stack, const DicomSlice& one) {
     const double steps = multiples ? places.back() : std::max(1.0, std::round(total / usual));
     const double most = multiples && are_empty ? 1 << 16 : 4.0 * std::ssize(stack.slices);
     if (steps > most) {
-        throw Failure("its " + std::to_string(stack.slices.size()) + " slices are " +
-                      text_of(sorted.front()) + " to " + text_of(sorted.back()) +
-                      " mm apart, which is no stack: most slices are missing, or several "
+        throw Failure("its " + std::to_string(stack.slices.size()) + " slices are spread over " +
+                      text_of(total) + " mm, in distances of " + text_of(sorted.front()) + " to " +
+                      text_of(sorted.back()) +
+                      " mm, which is no stack: most slices are missing, or several "
                       "acquisitions are mixed; give one complete series");
     }
     const auto count = static_cast<std::size_t>(steps) + 1;

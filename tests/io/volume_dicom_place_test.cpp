@@ -147,7 +147,7 @@ TEST(dicom_place, of_two_acquisitions_nearly_at_one_place_is_no_stack) {
         put_number(folder, slice);
     }
     const std::string message = refusal(folder.path());
-    EXPECT_TRUE(contains(message, "0.06 to 1.94 mm apart")) << message;
+    EXPECT_TRUE(contains(message, "0.06 to 1.94 mm, which is no stack")) << message;
     EXPECT_TRUE(contains(message, "acquisitions are mixed")) << message;
 }
 

@@ -192,7 +192,7 @@ TEST(dicom, slices_spread_beyond_sense_are_refused) {
     const ScratchFolder folder;
     const double heights[] = {0, 1, 2, 500};
     for (int i = 0; i < 4; ++i) put_slice(folder / name_of_slice(i), slice_at(i, heights[i]));
-    EXPECT_TRUE(contains(refusal(folder.path()), "1 to 498 mm apart, which is no stack"));
+    EXPECT_TRUE(contains(refusal(folder.path()), "1 to 498 mm, which is no stack"));
 }
 
 TEST(dicom, gantry_tilt_is_straightened_and_said) {
