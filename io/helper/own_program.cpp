@@ -56,7 +56,7 @@ const char* program_for_folder(const fs::path& folder) {
     for (const auto& entry : fs::directory_iterator(folder)) {
         std::error_code error;  // of a link to itself
         folders |= entry.is_directory(error);
-        if (is_broken_link(entry)) {  // of a slice that the other program names
+        if (is_dangling_link(entry)) {  // of a slice that the other program names
             has_names = has_names || has_dicom_name(entry.path());
             tiffs += dicoms == 0 && tiffs < 2 && is_tiff_name(entry.path());
         }
