@@ -3,6 +3,7 @@
 #include "bindings/python/own_process.hpp"
 #include "bindings/python/progress.hpp"
 #include "bindings/python/record.hpp"
+#include "io/tiff_peek.hpp"
 #include "palpate/io/address.hpp"
 #include "palpate/io/live_file.hpp"
 #include "palpate/io/raw_options.hpp"
@@ -13,6 +14,7 @@
 #include "palpate/run/no_effect.hpp"
 #include "palpate/run/source.hpp"
 #include "palpate/run/statistics.hpp"
+#include "palpate/stream/store.hpp"
 
 namespace palpate::python {
 namespace {
@@ -50,11 +52,17 @@ run::Source source_of(const fs::path& name, const LoadOptions& options) {
     return source;
 }
 
+/// A tiled TIFF is read whole too.
+bool is_for_store(const fs::path& name) {
+    const auto kind = name.extension();
+    return kind == ".zarr" || kind == ".n5" ||
+           (stream::is_chunked(name.string()) && !io::peek_tiff(name));
+}
+
 run::LoadedVolume load(const fs::path& name, const LoadOptions& options,
                        const ProgressFunction& progress) {
     const run::Source source = source_of(name, options);
-    const auto kind = name.extension();
-    if (io::is_web_address(name.string()) || kind == ".zarr" || kind == ".n5") {
+    if (!options.raw && is_for_store(name)) {
         throw io::InputError(io::without_secrets(name.string()) +
                              ": is read by the box: open it with open_store(); read() gives a "
                              "Volume, and Run(open_store(...)) feels it");

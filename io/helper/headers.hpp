@@ -100,6 +100,11 @@ void check_raw_length(VolumeHeader& header);
 /// checks.
 void stream_samples(VolumeHeader& header, const ByteSink& sink);
 
+/// What to do with scans of Philips in two files, .PAR and .REC.
+inline constexpr const char* parrec_advice =
+    "is of a scan of Philips (PAR/REC), which is not read; convert it with dcm2niix or "
+    "parrec2nii";
+
 /// Numbers separated by blanks; throws Failure that names the `field`.
 std::vector<double> numbers_in(const std::string& text, const std::string& field);
 /// The same for sizes.

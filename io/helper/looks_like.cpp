@@ -34,13 +34,13 @@ bool is_hidden(const fs::path& file) {
 }
 
 bool is_shown_file(const fs::directory_entry& entry) {
-    std::error_code error;  // of a link to itself
+    std::error_code error;  // of links that lead nowhere
     return entry.is_regular_file(error) && !is_hidden(entry.path());
 }
 
-bool is_broken_link(const fs::directory_entry& entry) {
+bool is_dangling_link(const fs::directory_entry& entry) {
     std::error_code error;
-    return entry.is_symlink(error) && !is_hidden(entry.path()) && !entry.exists(error);
+    return entry.is_symlink(error) && !entry.exists(error) && !is_hidden(entry.path());
 }
 
 bool begins_as_dicom(const fs::path& file) {

@@ -118,26 +118,6 @@ std::vector<double> first_of(VolumeHeader& header, const HeaderFields& fields,
     return taken;
 }
 
-/// "RAI": each axis leads away from the side of the body that its letter names. The directions
-/// count, but such a file has been changed by a program that knows only one of the two.
-void note_sides(const std::string& sides, VolumeHeader& header) {
-    static const std::map<char, Vec3> away = {{'R', {1, 0, 0}}, {'L', {-1, 0, 0}},
-                                              {'A', {0, 1, 0}}, {'P', {0, -1, 0}},
-                                              {'I', {0, 0, 1}}, {'S', {0, 0, -1}}};
-    constexpr double least = 0.3;  // of oblique axes, which lead to several sides
-    if (sides.size() != 3) return;
-    for (std::size_t a = 0; a < 3; ++a) {
-        const auto side = away.find(sides[a]);
-        if (side == away.end()) return;
-        const Vec3 axis = header.geometry.direction.col(static_cast<Eigen::Index>(a));
-        if (axis.dot(side->second) >= least) continue;
-        header.notes.push_back("its AnatomicalOrientation '" + sides +
-                               "' contradicts its axes (TransformMatrix, or those of LPS without "
-                               "one): the axes were taken");
-        return;
-    }
-}
-
 void read_geometry(const HeaderFields& fields, VolumeHeader& header) {
     const std::size_t axes = header.sizes.size();
     const auto spacing = first_of(header, fields, {"elementspacing", "elementsize"}, axes);
@@ -158,7 +138,6 @@ void read_geometry(const HeaderFields& fields, VolumeHeader& header) {
     }
     const std::string sides = fields.value("anatomicalorientation");
     g.oriented = sides.empty() ? g.direction != Mat3::Identity() : !sides.starts_with('?');
-    if (axes >= 3) note_sides(sides, header);
     g.measured = !spacing.empty();
     if (spacing.empty()) header.notes.push_back("its header gives no spacing: 1 mm was taken");
     const std::string unit = fields.value("distanceunits");

@@ -2,6 +2,7 @@
 // https://www.ccpem.ac.uk/mrc_format/mrc2014.php, and that of IMOD for bytes without a sign.
 // Lengths are in Angstrom.
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -116,6 +117,15 @@ Geometry mrc_grid(const MrcNumbers& header, std::vector<std::string>& notes) {
     return g;
 }
 
+/// Whether the header of a scan of Philips lies beside it, whose samples may begin as anything.
+bool is_of_par(std::filesystem::path file) {
+    if (extension_of(file) != ".rec") return false;
+    std::error_code error;
+    return std::ranges::any_of(std::array{".par", ".PAR"}, [&](const char* extension) {
+        return std::filesystem::exists(file.replace_extension(extension), error);
+    });
+}
+
 }  // namespace
 
 VolumeHeader mrc_header(const Request& request) {
@@ -126,6 +136,7 @@ VolumeHeader mrc_header(const Request& request) {
     }
     VolumeHeader header;
     const MrcNumbers numbers(start, header.notes);
+    if (!numbers.has_letters() && is_of_par(request.path)) throw Failure(parrec_advice);
     // Older files have no letters, but the order of their axes.
     if (!numbers.has_letters() && (numbers.whole(64) < 0 || numbers.whole(64) > 3)) {
         throw Failure("is no MRC file (it has no letters MAP at byte 208); check its name");

@@ -188,7 +188,8 @@ Transform qform_of(const Header& header, double unit, std::vector<std::string>& 
     if (!(square <= 1.002)) {
         throw Failure("its header field 'quatern' is no rotation; correct the header");
     }
-    // What rounding leaves of a half turn is 0, within nibabel's limit: its root would be an angle.
+    // What rounding leaves of a half turn is 0, as in the reference library: its root would be an
+    // angle. The limit is that of nibabel, as three rounded numbers may leave more than 1e-7.
     constexpr double rounding = 3 * std::numeric_limits<float>::epsilon();
     const double rest = 1 - square;
     const Eigen::Quaterniond rotation(rest < rounding ? 0 : std::sqrt(rest), vector[0], vector[1],

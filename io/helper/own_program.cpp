@@ -56,7 +56,7 @@ const char* program_for_folder(const fs::path& folder) {
     for (const auto& entry : fs::directory_iterator(folder)) {
         std::error_code error;  // of a link to itself
         folders |= entry.is_directory(error);
-        if (is_broken_link(entry)) {  // of a slice that the other program names
+        if (is_dangling_link(entry)) {  // of a slice that the other program names
             has_names = has_names || has_dicom_name(entry.path());
             tiffs += dicoms == 0 && tiffs < 2 && is_tiff_name(entry.path());
         }
@@ -92,15 +92,16 @@ std::string advice_for(const std::string& extension) {
         {".mnc .mnc2 .minc", "is a MINC file, which is not read; convert it with mnc2nii"},
         {".mif .mih",
          "is an image of MRtrix, which is not read; convert it with mrconvert IN OUT.nii"},
-        {".head .brik", "is an image of AFNI, which is not read; convert it with 3dAFNItoNIFTI"},
+        {".par", parrec_advice},
+        {".head .brik .brik.gz",
+         "is an image of AFNI, which is not read; convert it with 3dAFNItoNIFTI"},
         {".npy .npz .mat",
          "is an array of NumPy or MATLAB, which is not read; in Python, make a palpate.Volume of "
          "it, "
          "or save it as .nrrd, .nii or .tif"},
-        {".h5 .hdf5 .hdf",
-         "is an HDF5 file of another program than Imaris and BigDataViewer, which is not read; "
-         "save "
-         "its volume as .nrrd, .nii or .tif"},
+        {".h5 .hdf5 .hdf .ims",
+         "is an HDF5 file: those of Imaris and BigDataViewer are read in parts, as a store; of "
+         "another one, save the volume as .nrrd, .nii or .tif"},
         {".czi .nd2 .lif .oib .oif .vsi .dv",
          "is of a microscope's own format, which is not read; save it as OME-TIFF (Fiji) or "
          "OME-Zarr "
@@ -110,10 +111,12 @@ std::string advice_for(const std::string& extension) {
         {".png .jpg .jpeg .bmp .jp2 .gif",
          "is a picture, not a volume; save its slices as one TIFF file, or as a folder of them"}};
     const std::string last = extension.substr(std::min(extension.rfind('.'), extension.size()));
-    for (const auto& [extensions, words] : advices) {
-        std::istringstream names{std::string(extensions)};
-        for (std::string name; names >> name;) {
-            if (name == last || name == extension) return std::string(words);
+    for (const std::string& wanted : {extension, last}) {
+        for (const auto& [extensions, words] : advices) {
+            std::istringstream names{std::string(extensions)};
+            for (std::string name; names >> name;) {
+                if (name == wanted) return std::string(words);
+            }
         }
     }
     return "";

@@ -24,9 +24,8 @@ VolumeHeader locate_by_header(const Request& request);
 bool is_hidden(const std::filesystem::path& file);
 /// Whether a folder shows it as a file.
 bool is_shown_file(const std::filesystem::directory_entry& entry);
-/// Whether a folder shows it, but it is a link that leads nowhere or to itself. A missing slice
-/// must not be passed over.
-bool is_broken_link(const std::filesystem::directory_entry& entry);
+/// A link to a file that is not there, as git-annex and DataLad leave them, or to itself.
+bool is_dangling_link(const std::filesystem::directory_entry& entry);
 /// DICOM's four letters after 128 bytes, or, without these, elements as files begin with.
 bool begins_as_dicom(const std::filesystem::path& file);
 /// The same for a file in a folder, where hidden ones do not count.

@@ -257,9 +257,10 @@ Result read_folder(const Request& request) {
     std::vector<fs::path> files;
     for (const auto& entry : fs::directory_iterator(request.path)) {
         if (!is_tiff_name(entry.path())) continue;
-        if (is_broken_link(entry)) {
+        if (is_dangling_link(entry)) {
             throw Failure(quoted(entry.path()) +
-                          " is a link that leads to no file; get its file, or take the link away");
+                          " is a link to a file that is not there; get that file (git-annex: git "
+                          "annex get), or take the link away");
         }
         if (is_shown_file(entry)) files.push_back(entry.path());
     }

@@ -74,6 +74,11 @@ double millimetres_of(const ImageAxis& axis, std::vector<std::string>& notes) {
     return 1;
 }
 
+/// False for "pixel" and the like. Without a unit, the metadata may still mean lengths.
+bool is_length(const std::string& unit) {
+    return unit.empty() || io::millimetres_in(unit);
+}
+
 Vec3 extent_of(const Geometry& grid) {
     return grid.spacing.cwiseProduct(grid.size.cast<double>());
 }
@@ -159,6 +164,7 @@ class Taking {
     Level level_of(const ChunkedArray& array, const Image& image, const ImageLevel& place,
                    const Roles& roles) {
         Level level;
+        bool measured = image.measured;
         level.chunk = Index3::Ones();
         level.geometry.size = Index3::Ones();
         if (image.direction) level.geometry.direction = *image.direction;
@@ -171,12 +177,13 @@ class Taking {
             level.geometry.size[i] = static_cast<int>(array.shape[a]);
             level.chunk[i] = static_cast<int>(array.chunk[a]);
             const double unit = millimetres_of(image.axes[a], volume_.info.notes);
+            measured = measured && is_length(image.axes[a].unit);
             level.geometry.spacing[i] = std::abs(place.scale[a]) * unit;
             level.geometry.origin[i] = place.translation[a] * unit;
             if (place.scale[a] < 0) level.geometry.direction.col(i) *= -1;
         }
         level.geometry.oriented = image.oriented;
-        level.geometry.measured = image.measured;
+        level.geometry.measured = measured;
         try {
             check(level.geometry);
         } catch (const std::invalid_argument& e) {

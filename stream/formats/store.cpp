@@ -57,9 +57,12 @@ std::shared_ptr<const Store> open_chunked(const std::shared_ptr<const Objects>& 
     for (const auto open : {named_n5 ? open_n5 : open_zarr, named_n5 ? open_zarr : open_n5}) {
         if (auto store = open(objects, address, options)) return store;
     }
-    throw io::InputError(address +
-                         ": has no metadata of Zarr (zarr.json, .zgroup, .zarray) or N5 "
-                         "(attributes.json); check the name");
+    throw io::InputError(
+        address +
+        ": has no metadata of Zarr (zarr.json, .zgroup, .zarray) or N5 (attributes.json); check "
+        "the name" +
+        (io::is_web_address(address) ? ", and download a file of another format than HDF5 and TIFF"
+                                     : ""));
 }
 
 /// A file of chunks elsewhere: the address of its folder, and its name there.

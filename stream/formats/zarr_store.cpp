@@ -94,7 +94,11 @@ class Opening {
         Image image;
         image.measured = false;
         image.axes = usual_axes(array.axes());
-        take_names(root, image.axes);
+        if (!take_names(root, image.axes) && array.axes() > 3) {
+            volume_.info.notes.push_back(
+                std::string("its axes have no names: they were taken as ") +
+                (array.axes() > 4 ? "times, channels, z, y, x" : "channels, z, y, x"));
+        }
         for (ImageAxis& axis : image.axes) axis.unit = "millimeter";
         for (const char* name : {"scale_factor", "add_offset"}) {
             if (!root.attributes.contains(name)) continue;
@@ -108,12 +112,13 @@ class Opening {
         return volume_of(image, std::move(volume_), options_);
     }
 
-    /// The names of its dimensions: Zarr 3 has a place for them, xarray an attribute.
-    void take_names(const Node& root, std::vector<ImageAxis>& axes) {
+    /// The names of its dimensions: Zarr 3 has a place for them, xarray an attribute. False if
+    /// there are none.
+    bool take_names(const Node& root, std::vector<ImageAxis>& axes) {
         const Json& own = member(root.metadata, "dimension_names");
         const Json& names = own.is_array() ? own : member(root.attributes, "_ARRAY_DIMENSIONS");
-        if (!names.is_array() || names.size() != axes.size()) return;
-        if (std::ranges::all_of(names, &Json::is_null)) return;
+        if (!names.is_array() || names.size() != axes.size()) return false;
+        if (std::ranges::all_of(names, &Json::is_null)) return false;
         std::vector<ImageAxis> named;
         std::string text;
         for (const Json& name : names) {
@@ -127,6 +132,7 @@ class Opening {
             volume_.info.notes.push_back("its dimensions have the names " + text +
                                          ": the last were taken as z, y, x");
         }
+        return true;
     }
 
     /// The series of a bioformats2raw folder are images named 0, 1, ...

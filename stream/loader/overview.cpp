@@ -22,6 +22,8 @@ constexpr int threads = 32;
 /// Most reads for an overview of a level that is too large to be read whole: of rows, or of pieces.
 constexpr std::int64_t most_rows = 4096;
 constexpr std::int64_t most_pieces = 512;
+/// Rows of more chunks than this are not read whole.
+constexpr int most_chunks_in_row = 16;
 
 /// By several threads, piece by piece, each of which says what part is made.
 Volume whole_level(const Store& store, int level, const std::stop_token& stop,
@@ -48,7 +50,8 @@ Volume thinned_level(const Store& store, std::int64_t samples, std::stop_token s
     const StoreInfo& info = store.info();
     const auto level = static_cast<int>(info.levels.size()) - 1;
     const Level& grid = info.levels.back();
-    const bool by_row = is_stored_in_rows(grid);
+    const bool by_row =
+        is_stored_in_rows(grid) && (grid.geometry.size[0] - 1) / grid.chunk[0] < most_chunks_in_row;
     const auto count_at = [&](int step) {
         return Index3((grid.geometry.size + Index3::Constant(step - 1)) / step);
     };

@@ -175,30 +175,6 @@ TEST(meta_image, units_scale_spacing_and_origin) {
     }
 }
 
-TEST(meta_image, sides_that_contradict_the_axes_are_noted) {
-    const ScratchFolder folder;
-    const auto read = [&](const std::string& matrix, const std::string& sides) {
-        return read_text(folder, "a.mha",
-                         "NDims = 3\nDimSize = 2 3 4\nElementType = MET_UCHAR\n"
-                         "ElementSpacing = 1 1 1\nTransformMatrix = " +
-                             matrix + "\nAnatomicalOrientation = " + sides +
-                             "\nElementDataFile = LOCAL\n");
-    };
-    const std::pair<const char*, const char*> fitting[] = {{"1 0 0 0 1 0 0 0 1", "RAI"},
-                                                           {"-1 0 0 0 -1 0 0 0 1", "LPI"},
-                                                           {"0 1 0 0 0 -1 -1 0 0", "ASL"},
-                                                           {"0.8 0.6 0 -0.6 0.8 0 0 0 1", "RAI"},
-                                                           {"-1 0 0 0 -1 0 0 0 1", "???"}};
-    for (const auto& [matrix, sides] : fitting) {
-        EXPECT_FALSE(contains(all_notes(read(matrix, sides)), "contradicts")) << sides;
-    }
-    for (const char* sides : {"LPI", "RAS", "ARI"}) {
-        const VolumeFile file = read("1 0 0 0 1 0 0 0 1", sides);
-        EXPECT_TRUE(contains(all_notes(file), "contradicts its axes")) << sides;
-        EXPECT_EQ(file.volume.geometry().direction, Mat3::Identity());
-    }
-}
-
 TEST(meta_image, a_header_may_have_fields_for_each_of_thousands_of_frames) {
     const ScratchFolder folder;
     std::string head = "NDims = 3\nDimSize = 2 3 4\nElementType = MET_UCHAR\n";

@@ -88,12 +88,13 @@ TEST(slice_links, a_slice_that_is_a_link_to_nowhere_or_to_itself_is_named) {
         put_slices(folder, {"s0", "s1", "s2"});
         std::filesystem::create_symlink(target, folder / "s3.tif");
         const std::string message = refusal(folder.path());
-        EXPECT_TRUE(contains(message, "'s3.tif' is a link that leads to no file")) << message;
+        EXPECT_TRUE(contains(message, "'s3.tif' is a link to a file that is not there")) << message;
         EXPECT_TRUE(one_line_about(message, folder.path())) << message;
         for (int i = 0; i < 3; ++i) {
             std::filesystem::remove(folder / ("s" + std::to_string(i) + ".tif"));
         }
-        EXPECT_TRUE(contains(refusal(folder.path()), "'s3.tif' is a link that leads to no file"));
+        EXPECT_TRUE(
+            contains(refusal(folder.path()), "'s3.tif' is a link to a file that is not there"));
     }
 }
 

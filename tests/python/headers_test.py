@@ -455,5 +455,9 @@ def test_an_mrc_that_is_not_read_is_refused(tmp_path):
     mrc(path, data, 1)
     path.write_bytes(path.read_bytes()[:-10])
     refused(path, "cut off")
+    (tmp_path / "a.PAR").write_text("# === DATA DESCRIPTION FILE ===")
+    for samples in (bytes(4000), bytes(range(250)) * 16):
+        (tmp_path / "a.REC").write_bytes(samples)
+        refused(tmp_path / "a.REC", "dcm2niix")
     path.write_bytes(b"PAR and REC of another program")
     refused(path, "too short")

@@ -1,5 +1,7 @@
 """Stores give the samples of the volume, a box at a time, in their place."""
 
+import os
+import subprocess
 import time
 
 import numpy
@@ -53,6 +55,18 @@ def test_a_store_is_felt_while_it_is_read(volume, tmp_path):
 def test_load_points_to_the_function_for_stores(name):
     with pytest.raises(palpate.InputError, match=r"read by the box: open it with open_store\(\)"):
         palpate.load(name)
+
+
+@pytest.mark.parametrize("name", ("plain", "a.h5", "a.ims"))
+def test_load_points_there_whatever_the_name_of_a_store(volume, tmp_path, name):
+    if name == "plain":
+        subprocess.run([os.environ["PALPATE"], "convert", "--quiet", tmp_path / "v.nrrd", tmp_path / "v.zarr"], check=True)
+        (tmp_path / "v.zarr").rename(tmp_path / name)
+        assert palpate.open_store(tmp_path / name).type == "uint16"
+    else:
+        (tmp_path / name).write_bytes(b"\x89HDF\r\n\x1a\n")
+    with pytest.raises(palpate.InputError, match=r"read by the box: open it with open_store\(\)"):
+        palpate.load(tmp_path / name)
 
 
 def test_wrong_boxes_levels_and_addresses_are_refused(volume, tmp_path):

@@ -136,6 +136,23 @@ TEST(Hdf5, setups_and_times_of_bigdataviewer_are_channels_and_times_with_the_xml
     }
 }
 
+TEST(Hdf5, voxels_of_bigdataviewer_in_pixels_are_not_measured) {
+    const ScratchFolder folder;
+    support::put_bytes(folder / "bdv.h5", bytes_of(hdf5_written() / "bdv.h5"));
+    const std::string xml = bytes_of(hdf5_written() / "bdv.xml");
+    for (const auto& [unit, measured] : {std::pair{"mm", true}, {"pixel", false}, {"px", false}}) {
+        std::string text = xml;
+        text.replace(text.find("<unit>mm"), 8, std::string("<unit>") + unit);
+        support::put_bytes(folder / "bdv.xml", text);
+        StoreOptions options;
+        options.channel = 1;
+        const auto store = open_store(folder / "bdv.h5", options);
+        EXPECT_EQ(store->info().levels.at(0).geometry.measured, measured) << unit;
+        EXPECT_EQ(store->info().levels[0].geometry.spacing, Vec3(1, 2, 3));
+        EXPECT_EQ(store->info().notes.size(), measured ? 0U : 1U);
+    }
+}
+
 TEST(Hdf5, a_public_file_of_imaris_reads_as_h5py_reads_it) {
     const fs::path file = real_volume("minimal.ims");
     if (!fs::exists(file)) GTEST_SKIP() << "no sample file";

@@ -159,6 +159,7 @@ TEST(Http, a_missing_chunk_is_fill_and_missing_metadata_an_error) {
     const std::string message =
         message_of<io::InputError>([&] { (void)open_store(server.address("no.zarr"), quick()); });
     EXPECT_TRUE(contains(message, "has no metadata of Zarr")) << message;
+    EXPECT_TRUE(contains(message, "download a file of another format")) << message;
 }
 
 TEST(Http, shards_are_read_in_parts_and_a_server_without_parts_is_refused) {

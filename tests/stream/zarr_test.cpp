@@ -98,6 +98,24 @@ TEST(Zarr, what_needs_no_configuration_may_be_given_by_its_name_alone) {
     }
 }
 
+TEST(Zarr, axes_without_names_are_taken_by_their_number_and_that_is_said) {
+    const ScratchFolder folder;
+    for (const auto& [shape, told] : {std::pair{"[2,2,2]", ""},
+                                      {"[3,2,2,2]", "taken as channels, z, y, x"},
+                                      {"[4,3,2,2,2]", "taken as times, channels, z, y, x"}}) {
+        fs::create_directories(folder / "a.zarr");
+        put_bytes(folder / "a.zarr/.zarray",
+                  std::string(R"({"zarr_format":2,"dtype":"|u1","compressor":null,"fill_value":0,)"
+                              R"("order":"C","filters":null,"shape":)") +
+                      shape + R"(,"chunks":)" + shape + "}");
+        const auto store = open_store(folder / "a.zarr");
+        std::string notes;
+        for (const std::string& note : store->info().notes) notes += note;
+        EXPECT_EQ(contains(notes, "axes have no names"), *told != 0) << notes;
+        EXPECT_TRUE(contains(notes, told)) << notes;
+    }
+}
+
 TEST(OmeZarr, channel_time_scale_and_translation_of_each_level_are_those_of_its_metadata) {
     for (int time = 0; time < 2; ++time) {
         for (int channel = 0; channel < 3; ++channel) {
