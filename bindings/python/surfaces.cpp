@@ -42,20 +42,20 @@ SurfaceMesh mesh_from(const Doubles& vertices, const Indices& triangles) {
     SurfaceMesh mesh;
     mesh.vertices = points_from(vertices, "vertices");
     const std::uint32_t* corner = triangles.data();
-    mesh.triangles.resize(static_cast<std::size_t>(triangles.shape(0)));
-    const GilReleasedForRows unlocked(mesh.vertices.size() + mesh.triangles.size());
+    const auto count = static_cast<std::size_t>(triangles.shape(0));
+    const GilReleasedForRows unlocked(mesh.vertices.size() + count);
     Stoppable work;
     for (const Vec3& vertex : mesh.vertices) {
         check_numbers("vertices", vertex, ranges::finite);
         work.done(sizeof vertex);
     }
-    for (auto& triangle : mesh.triangles) {
-        work.done(sizeof triangle);
-        for (std::uint32_t& vertex : triangle) {
-            vertex = *corner++;
+    mesh.triangles.reserve(count);
+    for (std::size_t i = 0; i < count; ++i, corner += 3) {
+        mesh.triangles.push_back({corner[0], corner[1], corner[2]});
+        work.done(sizeof mesh.triangles[0]);
+        for (const std::uint32_t vertex : mesh.triangles.back()) {
             if (vertex < mesh.vertices.size()) continue;
-            throw std::invalid_argument("triangle " +
-                                        std::to_string(&triangle - mesh.triangles.data()) +
+            throw std::invalid_argument("triangle " + std::to_string(i) +
                                         " names a vertex that there is not");
         }
     }

@@ -30,7 +30,8 @@ OTHERS = {"progress", "threads", "name", "repeats", "seed", "history_bytes", "me
           "interval", "batch", "cold", "valid", "armed", "released", "pointing", "orientation_xyzw", "version", "solid"}
 # Tested in these files, which have files to read.
 ELSEWHERE = {"load series": "dicom_readers", "open_store channel": "readers", "open_store time": "stores",
-             "LoadedVolume.__init__ level": "stores", "Store.read level": "stores"}
+             "LoadedVolume.__init__ level": "stores", "Store.read level": "stores",
+             "layers_by_label beside": "volumes"}
 
 
 def grid(volume):

@@ -170,6 +170,7 @@ QLayout* BrushControls::make_form() {
                                const double infinity = std::numeric_limits<double>::infinity();
                                change([&](BrushChoice& c) { c.rate = on ? infinity : rate_; });
                            }});
+    at_once->setToolTip(rate->toolTip());
     auto* form = new QFormLayout;
     form->setVerticalSpacing(3);
     form->addRow(as_tool);
