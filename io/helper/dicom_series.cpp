@@ -83,6 +83,18 @@ std::vector<DicomSeries> by_contrast(DicomSeries series) {
     return all;
 }
 
+/// An anonymiser may give each file an identity of its own. It then tells nothing apart.
+void forget_unique(std::vector<DicomSlice>& slices, std::string DicomSlice::*identity) {
+    std::map<std::string, std::map<std::string, int>> counts;
+    for (const DicomSlice& s : slices) ++counts[s.series_uid][s.*identity];
+    for (DicomSlice& s : slices) {
+        const auto& own = counts.at(s.series_uid);
+        const bool unique =
+            std::ranges::all_of(own, [](const auto& one) { return one.second == 1; });
+        if (unique && own.size() > 2) (s.*identity).clear();
+    }
+}
+
 /// What tells the series from others of its UID.
 std::string difference_of(const DicomSeries& series, const std::vector<DicomSeries>& all) {
     struct Part {
@@ -116,7 +128,12 @@ double same_place_mm(const DicomSeries& series) {
     const auto& pixel = series.slices.front().pixel;
     return std::min(0.05, 0.05 * (pixel ? pixel->head<2>().minCoeff() : 0.1));
 }
+
 std::vector<DicomSeries> series_of(std::vector<DicomSlice> slices) {
+    for (const auto identity :
+         {&DicomSlice::patient_id, &DicomSlice::study_uid, &DicomSlice::frame_of_reference}) {
+        forget_unique(slices, identity);
+    }
     std::map<std::string, std::vector<DicomSeries>> sorted;
     for (DicomSlice& s : slices) {
         std::vector<DicomSeries>& alike = sorted[key_of(s)];

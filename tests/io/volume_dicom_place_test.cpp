@@ -95,6 +95,17 @@ TEST(dicom_place, of_several_bodies_under_one_series_is_that_of_several_series) 
     }
 }
 
+TEST(dicom_place, is_kept_where_an_anonymiser_gave_each_file_a_frame_of_reference) {
+    const ScratchFolder folder;
+    for (int i = 0; i < 6; ++i) {
+        const TestSlice slice = usual_slice(i);
+        const std::string own = element(0x20, 0x52, "UI", "7." + std::to_string(10 + i));
+        put_bytes(folder / (std::to_string(i) + ".dcm"),
+                  file_of(slice, with(dicom_data_set(slice), 0x28, 2, own)));
+    }
+    EXPECT_EQ(read_volume(folder.path()).volume.geometry().size[2], 6);
+}
+
 TEST(dicom_place, is_kept_where_small_differences_of_distances_add_up) {
     const ScratchFolder folder;
     std::vector<double> heights;
