@@ -98,6 +98,8 @@ void remove_one(const fs::path& path) {
             remove_tree(path);
         } else if (S_ISDIR(about.st_mode) && is_own) {
             remove_if_known(path);
+        } else if (S_ISDIR(about.st_mode) && told_by(path.filename().native()).inode == 0) {
+            ::rmdir(path.c_str());  // made, but not yet signed: it goes only if it is empty
         }
     }
     ::close(descriptor);

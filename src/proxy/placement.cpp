@@ -14,16 +14,20 @@ Vec3 normal_of(const Field& field, const LatticePoint& point) {
     return physical_from_grid_axes(field.geometry(), out / length);
 }
 
+struct FirstHit {
+    LatticePoint at;
+    bool at_start;  ///< inside the solid from the start
+};
+
 /// The place where straight motion from one point (index space) to another meets the surface.
 template <class AnySite>
-std::optional<LatticePoint> first_hit(const Field& field, double isovalue, const Vec3& start,
-                                      const Vec3& target, int step_budget) {
+std::optional<FirstHit> first_hit(const Field& field, double isovalue, const Vec3& start,
+                                  const Vec3& target, int step_budget) {
     AnySite site(field, isovalue - field.offset(), field.sign(), AnySite::located(start));
     Progress progress{field.geometry(), {}, target, step_budget};
-    const bool hit =
-        site.excess() > site.level() || walk_to(site, target, progress) == WalkEnd::surface;
-    if (!hit) return std::nullopt;
-    return site.point;
+    const bool at_start = site.excess() > site.level();
+    if (!at_start && walk_to(site, target, progress) != WalkEnd::surface) return std::nullopt;
+    return FirstHit{site.point, at_start};
 }
 
 /// A straight way in index space.
@@ -88,12 +92,14 @@ RayHit cast_ray(const Field& field, double isovalue, const Vec3& from, const Vec
     if (!near) return ray;
     const auto hit_of =
         field.interpolation() == Interpolation::cubic ? first_hit<CubicSite> : first_hit<Site>;
-    const std::optional<LatticePoint> at =
-        hit_of(field, isovalue, near->from, near->to, step_budget);
-    if (!at) return ray;
+    const std::optional<FirstHit> met = hit_of(field, isovalue, near->from, near->to, step_budget);
+    if (!met) return ray;
     ray.hit = true;
-    ray.point = physical_from_index(geometry, index_of(field.interpolation(), *at));
-    ray.normal = normal_of(field, *at);
+    const bool from_inside = met->at_start && !is_in_background;  // without rounding
+    ray.point = from_inside
+                    ? from
+                    : physical_from_index(geometry, index_of(field.interpolation(), met->at));
+    ray.normal = normal_of(field, met->at);
     return ray;
 }
 
