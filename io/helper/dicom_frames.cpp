@@ -165,7 +165,8 @@ std::vector<DicomSlice> enhanced_frames(const DicomSlice& file, const DicomGroup
 /// The quantity by which FrameIncrementPointer counts the frames.
 enum class Counted { by_nothing, by_time, by_slice, by_offset, by_location, otherwise };
 
-constexpr DicomTag grid_offsets{0x3004, 0x000c}, locations{0x0018, 0x2005}, pages{0x0018, 0x2001};
+constexpr DicomTag grid_offsets{0x3004, 0x000c}, frame_locations{0x0018, 0x2005},
+    pages{0x0018, 0x2001};
 
 bool has_time(const DicomGroup& data) {
     return data.has(frame_time) || data.has(frame_times);
@@ -184,7 +185,7 @@ Counted counted(const DicomGroup& data) {
     if (pointers[0] == frame_time || pointers[0] == frame_times) return Counted::by_time;
     if (pointers[0] == DicomTag{0x0054, 0x0080}) return Counted::by_slice;
     if (pointers[0] == grid_offsets) return Counted::by_offset;
-    if (pointers[0] == locations) return Counted::by_location;
+    if (pointers[0] == frame_locations) return Counted::by_location;
     if (pointers[0] == pages) return Counted::by_nothing;
     return Counted::otherwise;
 }
@@ -265,7 +266,7 @@ std::vector<DicomSlice> plain_frames(DicomSlice file, const DicomGroup& data) {
     }
     if (by == Counted::by_offset || by == Counted::by_location) {
         const bool is_grid = by == Counted::by_offset;
-        const auto offsets = data.numbers(is_grid ? grid_offsets : locations);
+        const auto offsets = data.numbers(is_grid ? grid_offsets : frame_locations);
         for (const double offset : offsets) {
             check_coordinate(offset, is_grid ? "GridFrameOffsetVector" : "SliceLocationVector");
         }

@@ -106,13 +106,13 @@ std::string difference_of(const DicomSeries& series, const std::vector<DicomSeri
                                      {"study ", &DicomSlice::study_uid},
                                      {"frame of reference ", &DicomSlice::frame_of_reference}};
     std::string text;
-    for (const auto& [name, value] : parts) {
-        const std::string& own = series.slices.front().*value;
+    for (const Part& part : parts) {
+        const std::string& own = series.slices.front().*part.value;
         const auto differs = [&](const DicomSeries& other) {
-            return other.uid == series.uid && other.slices.front().*value != own;
+            return other.uid == series.uid && other.slices.front().*part.value != own;
         };
         if (own.empty() || std::ranges::none_of(all, differs)) continue;
-        text += (text.empty() ? "" : ", ") + std::string(name) + own;
+        text += (text.empty() ? "" : ", ") + std::string(part.name) + own;
     }
     return text;
 }

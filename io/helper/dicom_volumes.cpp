@@ -331,7 +331,7 @@ void check_others(const std::vector<fs::path>& slices, const std::vector<fs::pat
         if (!slice.has_extension()) bare.insert(slice.parent_path());
     }
     for (const fs::path& file : others) {
-        const bool missing = is_broken_link(fs::directory_entry(file));
+        const bool missing = is_dangling_link(fs::directory_entry(file));
         const bool empty = !missing && fs::file_size(file) == 0;
         const std::string like = numberless(file);  // a LOCKFILE has no number
         const bool is_bare = !file.has_extension() && bare.contains(file.parent_path()) &&
@@ -356,7 +356,7 @@ void check_others(const std::vector<fs::path>& slices, const std::vector<fs::pat
 Result read_folder(const Request& request) {
     std::vector<fs::path> files, others;
     const auto take = [&](const fs::directory_entry& entry) {
-        if (!is_shown_file(entry) && !is_broken_link(entry)) return;
+        if (!is_shown_file(entry) && !is_dangling_link(entry)) return;
         (begins_as_dicom(entry.path()) ? files : others).push_back(entry.path());
     };
     if (has_dicom_index(request.path)) {

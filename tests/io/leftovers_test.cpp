@@ -156,7 +156,6 @@ TEST(Leftovers, files_and_folders_that_palpate_did_not_make_stay_whatever_their_
         put_bytes(folder / (name + "/.palpate-temporary"), text);
     }
     data(dead + "-6.part/result/0/c/0/0/0");  // as Palpate would write it
-    std::filesystem::create_directory(folder / (dead + "-7.part"));
     data("signed");
     data(dead + "-8.part");
     sign(folder / (dead + "-8.part"));  // ours; its name is taken by another file
@@ -171,8 +170,9 @@ TEST(Leftovers, files_and_folders_that_palpate_did_not_make_stay_whatever_their_
     EXPECT_EQ(bytes_of(folder / (dead + "-6.part/result/0/c/0/0/0")), "precious");
 }
 
-TEST(Leftovers, a_file_that_was_killed_before_it_was_signed_is_removed_because_it_is_empty) {
+TEST(Leftovers, what_was_made_but_not_yet_signed_is_removed_because_it_is_empty) {
     const ScratchFolder folder;
+    std::filesystem::create_directory(folder / (".palpate-" + dead_process() + "-1.part"));
     put_bytes(folder / (".palpate-" + dead_process() + "-0.part"), "");
     put_bytes(folder / (".palpate-" + dead_process() + "-0.part"), "x");
     write_in_another_process(folder);
