@@ -316,10 +316,11 @@ void add_session(CLI::App& app, const char* name, const char* what, bool is_reco
     auto options = std::make_shared<TouchOptions>();
     CLI::App* command = app.add_subcommand(name, what);
     command->footer(fmt::format(
-        "If there is a display, the viewer opens and the mouse is the hand. Without a window, a "
-        "simulated hand explores the volume. Forces begin at zero once the "
-        "computed force is small.\nThey end at zero, however the session ends. On a terminal, keys "
-        "work while it runs (? lists them).\n\nExample:\n  {}",
+        "{} Forces begin at zero once the computed force is small.\nThey end at zero, however the "
+        "session ends. On a terminal, keys work while it runs (? lists them).\n\nExample:\n  {}",
+        is_record ? "Without --device, a simulated hand explores the volume."
+                  : "If there is a display, the viewer opens and the mouse is the hand. Without a "
+                    "window, a simulated hand explores the volume.",
         example));
     options->add_to(*command, is_record ? RunOptions::For::record : RunOptions::For::touch);
     if (!is_record) {

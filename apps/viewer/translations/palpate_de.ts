@@ -1072,10 +1072,6 @@ Der Schieber endet, wo Gerät und Regelkreis sie nicht mehr stabil wiedergeben k
 <context>
     <name>palpate::viewer::HandSwitch</name>
     <message>
-        <source>Settings of</source>
-        <translation>Einstellungen von</translation>
-    </message>
-    <message>
         <source>The panel shows the settings of this hand (N: the next one). Commands, keys and the mouse are for it</source>
         <translation>Die Leiste zeigt die Einstellungen dieser Hand (N: die nächste). Befehle, Tasten und Maus gelten ihr</translation>
     </message>

@@ -3,7 +3,6 @@
 
 #include <QBoxLayout>
 #include <QButtonGroup>
-#include <QLabel>
 
 #include <algorithm>
 #include <string>
@@ -19,7 +18,7 @@ namespace palpate::viewer {
 HandSwitch::HandSwitch(const Desk& desk, BrushControls& brush) : Desk(desk), brush_(brush) {
     setObjectName("hand_switch");
     auto* group = new QButtonGroup(this);
-    auto* row = row_in(this, {new QLabel(tr("Settings of"))});
+    auto* row = row_in(this);
     for (int hand = 1; hand <= most_hands; ++hand) {
         QPushButton* button = buttons_[hand] =
             named(new QPushButton, QString("hand_%1").arg(hand),

@@ -253,7 +253,7 @@ test("NRRD, MetaImage and NIfTI are read, or refused in the same words, as by th
     }
     counts[refused ? "refused" : "read"] += 1;
   }
-  assert.ok(counts.read > 20 && counts.refused > 15, JSON.stringify(counts));
+  assert.ok(counts.read > 20 && counts.refused >= 15, JSON.stringify(counts));
 });
 
 test("of several that are read at the same time, the last one that was asked for is used", async () => {

@@ -358,7 +358,7 @@ test("the settings are those of the table, and change the feel by name", () => {
   const force = () => Math.hypot(...session.snapshot().force);
   const soft = force();
   session.set("force.stiffness", 0.4);
-  for (let i = 0; i < 5; ++i) session.stepAt(1.501 + i / 1000, path(1500).at(-1));
+  for (let i = 0; i < 1000; ++i) session.stepAt(1.501 + i / 1000, path(1500).at(-1));
   assert.ok(Math.abs(force() - 2 * soft) < 1e-6, `${soft} ${force()}`);
   session.set("friction.static_coefficient", 0.5);
   assert.equal(value("friction.static_coefficient"), 0.5);
