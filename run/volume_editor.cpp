@@ -218,9 +218,9 @@ std::uint64_t VolumeEditor::version_of(const std::shared_ptr<const Samples>& sam
     return 0;  // not reached: the editor holds what it made
 }
 
-/// Computes an edit without the lock. If the samples have changed meanwhile, it is computed again,
-/// and edits that have not begun yet wait for it: it would never end if they kept coming first.
-/// What it has read is kept for the next time. Throws what edited() and `tell` throw.
+/// Computes an edit without the lock. If the samples have changed meanwhile, it is computed again.
+/// Edits that have not begun yet then wait for it, because it might never end otherwise. What it
+/// has read is kept for the next time. Throws what edited() and `tell` throw.
 VolumeEditor::Computed VolumeEditor::computed(Lock& lock, const Edit& asked,
                                               const std::stop_token& stop, const OnProgress& tell) {
     Fetched fetched;

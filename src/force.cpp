@@ -125,19 +125,19 @@ Vec3 within(Vec3 force, const Vec3& before, const Bounds& bounds, double step,
 /// A spring of translation [N] or rotation [N mm], or a magnet.
 struct SpringForce {
     double now;      // its force, within the limit
-    double by_hand;  // by which the hand's motion since the last tick can have raised it
+    double by_hand;  // the most that the hand's motion since the last tick can have added
     double before;   // its force in the last tick
     double most;     // its limit
 
-    /// The part of it that acts at once where something other than the hand changed it. `ramp`: the
-    /// part of a ramp that a tick is.
+    /// The part of it that acts at once if something other than the hand changed it. `ramp`: a tick
+    /// as a part of the ramp.
     double part_at_once(double ramp) const {
         const double at_once = before + by_hand + most * ramp;
         return now > at_once ? at_once / now : 1;
     }
 };
 
-/// What the hand's motion can change per length of its way, at most [N/mm].
+/// Greatest change of the force per length of the hand's way [N/mm].
 double steepest(const ForceSettings& settings) {
     const Magnet& magnet = settings.magnet;
     return std::max(settings.stiffness,
@@ -161,8 +161,8 @@ SpringForce turning_spring_of(const ForceState& state, const ForceInput& input, 
             state.turning_spring, most};
 }
 
-/// The part of the ramp at this time. After a change the ramp goes on from the part with which the
-/// springs give what they gave before. `step` is the time since the last tick [s].
+/// The part of the ramp at this time. After a change the ramp continues from the part with which
+/// the springs give as much as before. `step` is the time since the last tick [s].
 double part_of_ramp(ForceState& state, double ramp, double time, double step,
                     const SpringForce& spring, const SpringForce& turning) {
     const double since = time - state.ramp_begin;

@@ -204,16 +204,6 @@ bool replace(const std::filesystem::path& from, const std::filesystem::path& to)
     return ::rename(from.c_str(), to.c_str()) == 0;
 }
 
-bool replace_synced(const std::filesystem::path& from, const std::filesystem::path& to) {
-    const int file = open_to_read(from);
-    const bool done = file >= 0 && synchronise(file) && replace(from, to);
-    const int problem = errno;
-    if (file >= 0) ::close(file);
-    if (done) synchronise_folder(to.has_parent_path() ? to.parent_path() : ".");
-    errno = problem;
-    return done;
-}
-
 bool rename_new(const std::filesystem::path& from, const std::filesystem::path& to) {
     if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) {
         return true;
