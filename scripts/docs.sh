@@ -9,8 +9,9 @@ usage: scripts/docs.sh [--no-packages] [--serve [PORT]]
 Makes build/docs/site from the pages of the repository (MkDocs) and the public headers (Doxygen).
 Warnings are errors: links that lead nowhere, pages that are not in the navigation, mistakes in the
 comments of headers. If scripts/deep/web has built the page for the browser, it becomes part of the site and can be
-touched on its first page. Open build/docs/site/index.html: the pages need no network and no server. The
-search box and the page to touch need one: --serve shows the site at http://127.0.0.1:8000 (PORT) until Ctrl-C.
+touched on its first page. If a build has the Python module, its reference becomes part of the site. Open
+build/docs/site/index.html: the pages need no network and no server. The search box and the page to touch need
+one: --serve shows the site at http://127.0.0.1:8000 (PORT) until Ctrl-C.
 TEXT
 }
 
@@ -43,6 +44,14 @@ if [ -f "$web/palpate_core.wasm.gz" ]; then
     rm "$out/pages/touch/README.md" # it would become a page
 fi
 "$python" docs/site/stage.py . "$out/pages"
+mkdir "$out/pages/python"
+module=$(find build/*/bindings/python/palpate -name __init__.pyi 2>/dev/null | head -n 1 || true)
+if [ -n "$module" ]; then
+    PYTHONPATH=${module%/palpate/*} "$python" -B docs/site/python_reference.py "$out/pages/python"
+else
+    printf '# Python reference\n\nThis site was built without the Python module. %s\n' \
+        'Build the module, then build the site again.' >"$out/pages/python/index.md"
+fi
 version=$(sed -n 's/^project(.*VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
 export PALPATE_SITE_NAME="Palpate ${version:?CMakeLists.txt names no version}"
 "$python" -m mkdocs build --strict --quiet --config-file docs/site/mkdocs.yml

@@ -282,7 +282,7 @@ void bind_renderer(py::module_& module) {
              py::kw_only(), py::arg("progress") = py::none(),
              "The time of a tick [ns]: the mean of each `batch` ticks, without a clock inside.")
         .def_property_readonly("field", [](const R& r) { return r.field; })
-        .def("copy", &R::copied)
+        .def("copy", &R::copied, "A copy, which goes on independently.")
         .def("__copy__", &R::copied)
         .def("__deepcopy__", [](const R& r, const py::dict&) { return r.copied(); })
         .def("__repr__", [](const R& r) {

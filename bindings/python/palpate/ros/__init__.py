@@ -159,6 +159,7 @@ class Arm:
         self._lost = False
 
     def info(self) -> DeviceInfo:
+        """Limits and workspace, as they were given."""
         return self._info
 
     def _receive(self) -> None:
