@@ -37,8 +37,8 @@ thread_local const OpenedBy* opening = nullptr;
 
 }  // namespace
 
-OpenedBy::OpenedBy(const void* hand, std::function<void()> let_go)
-    : hand_(hand), let_go_(std::move(let_go)) {
+OpenedBy::OpenedBy(const void* hand, std::function<void()> close)
+    : hand_(hand), close_(std::move(close)) {
     opening = this;
 }
 
@@ -51,7 +51,7 @@ const void* opening_hand() {
 }
 
 Claim::Claim(std::string device, const void* hand) : device_(std::move(device)) {
-    if (opening && opening->hand_ == hand && held().is_by(hand, device_)) opening->let_go_();
+    if (opening && opening->hand_ == hand && held().is_by(hand, device_)) opening->close_();
     const std::lock_guard lock(held().mutex);
     number_ = ++held().last_number;
     const auto [at, is_free] = held().holders.try_emplace(device_, Holder{hand, number_});

@@ -11,9 +11,9 @@ namespace palpate::devices {
 /// While it exists, the devices that this thread opens are those of `hand`.
 class OpenedBy {
   public:
-    /// `let_go` closes the device that the hand has. It is called before that device is opened
+    /// `close` closes the device that the hand has. It is called before that device is opened
     /// again, as when its options change: drivers have one handle per device.
-    OpenedBy(const void* hand, std::function<void()> let_go);
+    OpenedBy(const void* hand, std::function<void()> close);
     ~OpenedBy();
     OpenedBy(const OpenedBy&) = delete;
     OpenedBy& operator=(const OpenedBy&) = delete;
@@ -22,7 +22,7 @@ class OpenedBy {
     friend class Claim;
     friend const void* opening_hand();
     const void* hand_;
-    std::function<void()> let_go_;
+    std::function<void()> close_;
 };
 
 /// That which this thread opens devices for; null: none that is known.

@@ -35,7 +35,7 @@ bool is_stopping(const std::atomic<Device*>& place) {
     return device && device->is_stopping();
 }
 
-void let_go() {
+void stop_all() {
     bool wait = false;  // also for what another thread has told to stop
     for (std::size_t i = 0; i < guarded.size(); ++i) {
         if (Device* const device = guarded[i].load()) told[i].store(device);
@@ -59,13 +59,13 @@ Before before;
 /// Every unhandled exception: access violations, divisions by zero, stacks that run out,
 /// those that a program raises itself.
 LONG WINAPI on_exception(EXCEPTION_POINTERS* exception) {
-    let_go();
+    stop_all();
     return before.filter ? before.filter(exception) : EXCEPTION_CONTINUE_SEARCH;
 }
 
 /// abort(), and with it an uncaught C++ exception.
 void on_abort(int number) {
-    let_go();
+    stop_all();
     std::signal(number, before.abort);
     std::raise(number);
 }
@@ -73,7 +73,7 @@ void on_abort(int number) {
 /// Ctrl-C, Ctrl-Break, the console closed, log-off, shutdown; on a thread of the system's. Those
 /// that an application handles stay its own.
 BOOL WINAPI on_end(DWORD) {
-    let_go();
+    stop_all();
     return FALSE;
 }
 

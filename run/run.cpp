@@ -44,14 +44,14 @@ Field seen(const Field& field) {
 /// For the run `hand`. If the device is the one that it has, it is closed first.
 std::unique_ptr<Device> open_for(const Field& field, double isovalue, const Setup& setup,
                                  const Run* hand, const OnProgress& progress = {},
-                                 const std::function<void()>& let_go = {}) {
+                                 const std::function<void()>& close = {}) {
     const double rate = setup.render.rate.value_or(usual_rate);
     if (!(rate >= 250 && rate <= 8000)) {
         std::string text;
         io::append_number(text, rate);
         throw std::invalid_argument("rate " + text + " Hz: a live session runs at 250 to 8000 Hz");
     }
-    const devices::OpenedBy opened_by(hand, let_go);
+    const devices::OpenedBy opened_by(hand, close);
     return setup.open_device(setup.device, {seen(field), isovalue, rate,
                                             [&](const DeviceInfo& info) {
                                                 return transform_for(field.geometry(), info, setup);

@@ -341,7 +341,7 @@ void Servo::tick(const TickClock& clock) noexcept {
     SessionTick result = advance(session_, time, reading, clock.now);
     const std::int64_t before_write = clock.read();
     if (1e-9 * static_cast<double>(before_write - start) > session_.settings.overrun) {
-        let_go(session_, result);
+        drop_force(session_, result);
         add(overruns_, 1);
     }
     device_->write({result.tick.force, result.tick.torque}, time);
@@ -406,7 +406,7 @@ void Servo::begin_recording(const command::Resume& from) noexcept {
     in_recorder_.store(true);
     const bool begins = awaited_.load() == from.point.get();
     if (begins) {
-        halt(session_, *next_point_);
+        checkpoint(session_, *next_point_);
         recorder_.store(next_recorder_);
     }
     in_recorder_.store(false);
@@ -438,7 +438,7 @@ void Servo::record(const SessionEvent& event) noexcept {
 void Servo::show_failure() noexcept {
     Snapshot last = snapshot_.get().value_or(Snapshot{});
     last.session.device.status = DeviceStatus::fault;
-    let_go(session_, last.session);
+    drop_force(session_, last.session);
     snapshot_.put(last);
 }
 

@@ -293,7 +293,7 @@ SessionTick advance(Session& session, double time, const DeviceReading& reading,
     return result;
 }
 
-void let_go(Session& session, SessionTick& tick) noexcept {
+void drop_force(Session& session, SessionTick& tick) noexcept {
     restart(session.renderer.force);
     tick.tick.force.setZero();
     tick.tick.torque.setZero();
@@ -302,7 +302,7 @@ void let_go(Session& session, SessionTick& tick) noexcept {
 
 SessionTick repeat(Session& session, const SessionTick& recorded) noexcept {
     SessionTick tick = advance(session, recorded.tick.time, recorded.device);
-    if (recorded.tick.force_flags & force_overrun) let_go(session, tick);
+    if (recorded.tick.force_flags & force_overrun) drop_force(session, tick);
     return tick;
 }
 

@@ -158,13 +158,13 @@ Phantom::Phantom(std::unique_ptr<Attachment> attachment, const Settings& setting
     try {
         start();
     } catch (...) {
-        halt();
+        end_loop();
         throw;
     }
 }
 
 Phantom::~Phantom() {
-    halt();
+    end_loop();
 }
 
 void Phantom::start() {
@@ -178,7 +178,7 @@ void Phantom::start() {
     check("starting the driver's servo loop");
 }
 
-void Phantom::halt() noexcept {
+void Phantom::end_loop() noexcept {
     if (!is_scheduled_) return;
     const Hd& hd = attachment_->hd();
     frames_->link().stop();

@@ -55,7 +55,7 @@ class Phantom final : public Device {
 
   private:
     void start();
-    void halt() noexcept;
+    void end_loop() noexcept;
     void check(const char* step) const;
     std::string calibration_words(Trouble::Kind kind) const;
 

@@ -83,7 +83,7 @@ void Mouse::step() {
         return report(now);
     }
     if (connected_) {
-        let_go(hand_);
+        release_all(hand_);
         hand_.is_unplugged = false;
         events_ = {};
         connected_.store(false);

@@ -42,7 +42,7 @@ std::optional<Event> EventReader::next() {
 
 void apply(Hand& hand, const Event& event, const Feel& feel) {
     if (event[0] == device) {
-        let_go(hand);
+        release_all(hand);
         hand.is_unplugged = event[1] != 0;
         return;
     }
@@ -75,7 +75,7 @@ void advance(Hand& hand, double time, const Feel& feel) {
     hand.orientation = turned.normalized().toRotationMatrix();
 }
 
-void let_go(Hand& hand) {
+void release_all(Hand& hand) {
     hand.slide.setZero();
     hand.twist.setZero();
     hand.buttons = 0;

@@ -64,7 +64,7 @@ void apply(Hand& hand, const Event& event, const Feel& feel);
 /// Moves the hand for this time [s] with the current deflections.
 void advance(Hand& hand, double time, const Feel& feel);
 /// Releases puck and buttons, when no more events come.
-void let_go(Hand& hand);
+void release_all(Hand& hand);
 
 /// Where the daemon's socket may be, in the order to try: `environment` is $SPNAV_SOCKET (empty:
 /// none), `configuration` the text of /etc/spnavrc.

@@ -178,7 +178,7 @@ struct SessionPoint {
 };
 /// Writes the state of a session to `point`. The proxy first drops results that only save time.
 /// Neither throws nor allocates.
-void halt(Session& session, SessionPoint& point) noexcept;
+void checkpoint(Session& session, SessionPoint& point) noexcept;
 
 /// The result of a live tick.
 struct SessionTick {
@@ -233,10 +233,10 @@ SessionTick advance(Session& session, double time, const DeviceReading& reading,
                     Clock clock = nullptr) noexcept;
 
 /// Sets the force of a tick that came too late to zero, and starts the force again.
-void let_go(Session& session, SessionTick& tick) noexcept;
+void drop_force(Session& session, SessionTick& tick) noexcept;
 
-/// Renders a recorded tick again: advance() with its time and reading, and let_go() if its force
-/// was set to zero. The result has the same bits if the session is in the same state.
+/// Renders a recorded tick again: advance() with its time and reading, and drop_force() if its
+/// force was set to zero. The result has the same bits if the session is in the same state.
 SessionTick repeat(Session& session, const SessionTick& recorded) noexcept;
 
 }  // namespace palpate

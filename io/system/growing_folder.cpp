@@ -148,7 +148,7 @@ GrowingFolder::GrowingFolder(fs::path out, const std::string* job)
     if (!is_there(out_)) return;
     // Another process has finished it since it was looked for.
     if (!is_continued_) remove_held(folder_, lock_);
-    let_go();
+    close_descriptors();
     check_new_folder(out_);
 }
 
@@ -179,7 +179,7 @@ void GrowingFolder::make(const std::string* job) {
     const fs::path partial = with_end(out_, ".partial");
     if (rename_new(folder_, partial)) return;
     const int problem = errno;
-    let_go();
+    close_descriptors();
     remove_tree(folder_);
     if (problem != EEXIST) refuse(partial, reason(problem) + "; choose another folder");
 }
@@ -230,7 +230,7 @@ bool GrowingFolder::take(const std::string& job) {
     if (found.folder < 0) return false;
     lock_ = found.folder;
     if (!is_still(AT_FDCWD, folder_.c_str(), found.folder)) {
-        let_go();
+        close_descriptors();
         return false;
     }
     if (found.job != job) {
@@ -247,11 +247,11 @@ void GrowingFolder::begin_anew() {
     try {
         unknown = unknown_below(folder_, OwnFolder::growing);
     } catch (const OutputError&) {
-        let_go();
+        close_descriptors();
         throw;
     }
     if (unknown.empty()) unknown = remove_held(folder_, lock_);
-    let_go();
+    close_descriptors();
     refuse_unknown(folder_, unknown);
     note_ = folder_.string() +
             ": was of another source, of other settings or of another version: begun anew";
@@ -265,11 +265,11 @@ void GrowingFolder::hold(int folder) {
     if (made) held_result_ = ::openat(folder, "result", as_folder);
     if (held_result_ >= 0) return;
     const int problem = errno;
-    let_go();
+    close_descriptors();
     refuse(result(), "cannot be written (" + reason(problem) + ")" + what_to_do);
 }
 
-void GrowingFolder::let_go() noexcept {
+void GrowingFolder::close_descriptors() noexcept {
     for (int* descriptor : {&lock_, &held_result_}) {
         if (*descriptor >= 0) ::close(*descriptor);
         *descriptor = -1;
@@ -278,7 +278,7 @@ void GrowingFolder::let_go() noexcept {
 
 GrowingFolder::~GrowingFolder() {
     remove_own();
-    let_go();
+    close_descriptors();
 }
 
 /// If files of others remain, the folder gets a name that people see.

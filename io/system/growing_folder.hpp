@@ -59,7 +59,7 @@ class GrowingFolder {
     void begin_anew();
     void remove_own() noexcept;
     void hold(int folder);
-    void let_go() noexcept;
+    void close_descriptors() noexcept;
     void move_into_place(const MayReplace& may_replace);
     bool exchange_with_out(const MayReplace& may_replace);
     [[noreturn]] void keep_replaced(const std::filesystem::path& at, const std::string& problem,

@@ -20,7 +20,7 @@ auto in_use(const auto& array, int count) {
 }
 
 /// Drops the results of a tool's proxy that only save time.
-void halt_tool(ToolProxy& proxy) noexcept {
+void drop_kept(ToolProxy& proxy) noexcept {
     tool::Kept& kept = proxy.kept();
     kept.renewed = true;
     kept.inside = false;
@@ -28,7 +28,7 @@ void halt_tool(ToolProxy& proxy) noexcept {
     kept.surroundings.samples.reset();  // others hold them
 }
 
-/// For a proxy that halt_tool() has left or that is new.
+/// For a proxy that drop_kept() has left or that is new.
 void resume_tool(ToolProxy& proxy, const ToolState& state) noexcept {
     static_cast<ToolState&>(proxy) = state;
     // The tool may be another one than that of the check.
@@ -131,11 +131,11 @@ bool is_of(const LayerState& state, const Layers* layers) {
 
 }  // namespace
 
-void halt(Session& session, SessionPoint& point) noexcept {
+void checkpoint(Session& session, SessionPoint& point) noexcept {
     Renderer& renderer = session.renderer;
     const RendererSettings& settings = renderer.settings;
     if (std::optional<ToolProxy>& proxy = renderer.tool_proxy) {
-        halt_tool(*proxy);
+        drop_kept(*proxy);
         if (settings.tool) point.tool = *proxy;
         if (!settings.tool) resume_tool(*proxy, {});  // as a new one
     }
@@ -194,7 +194,7 @@ void resume(Session& session, const SessionPoint& point) noexcept {
         Tissues(settings.layers, renderer.layers, renderer.proxy, renderer.field);
     }
     if (!renderer.tool_proxy) return;
-    halt_tool(*renderer.tool_proxy);
+    drop_kept(*renderer.tool_proxy);
     resume_tool(*renderer.tool_proxy, point.tool);
 }
 

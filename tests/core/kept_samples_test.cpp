@@ -80,7 +80,7 @@ TEST(KeptSamples, a_session_goes_on_like_one_that_a_recording_brings_back) {
     int cut = 0;
     for (int i = 0; i < 2000; ++i) {
         auto point = std::make_shared<SessionPoint>();
-        halt(session, *point);
+        checkpoint(session, *point);
         point->proxy.kept = {};
         point->proxy.kept_samples = {};
         Session other{make_renderer(field, 128, settings), {}};

@@ -367,7 +367,7 @@ TEST(Session, a_tick_that_came_too_late_has_no_force_and_the_next_starts_anew) {
     Live live;
     live.rest_at(31);
     live.next();
-    let_go(live.session, live.last);
+    drop_force(live.session, live.last);
     EXPECT_EQ(live.last.tick.force, Vec3(0, 0, 0));
     EXPECT_NE(live.last.tick.force_flags & force_overrun, 0);
     live.next();

@@ -178,7 +178,7 @@ TEST(ToolSession, force_and_torque_stay_within_the_device_and_stop_together) {
     expect_stop("lost", [](FeltLive& l) { l.reading.status = DeviceStatus::lost; });
     expect_stop("dead-man", [](FeltLive& l) { l.reading.buttons = 0; });
     expect_stop("off", [](FeltLive& l) { apply(l.session, command::Forces{false}); });
-    let_go(live.session, live.last);
+    drop_force(live.session, live.last);
     EXPECT_TRUE(live.last.tick.torque.isZero(0));
 }
 

@@ -48,7 +48,7 @@ std::string recording(const LoadedVolume& loaded) {
     };
     for (int i = -30; i < 0; ++i) (void)tick(i);
     const auto point = std::make_shared<SessionPoint>();
-    halt(session, *point);
+    checkpoint(session, *point);
     writer.queue().push(Command(command::Resume{point}));
     for (int i = 0; i < 65; ++i) {
         if (i % 5 == 4) {

@@ -71,7 +71,7 @@ TEST(Puck, goes_on_until_it_is_let_go) {
     EXPECT_NEAR(hand.position[0], 1, 1e-12);
     apply(hand, slides(35, 0, 0), {});
     apply(hand, {press, 1}, {});
-    let_go(hand);
+    release_all(hand);
     advance(hand, 0.1, {});
     EXPECT_NEAR(hand.position[0], 1, 1e-12);
     EXPECT_EQ(hand.buttons, 0U);
