@@ -32,7 +32,7 @@ void tick(benchmark::State& state, double depth, const RendererSettings& setting
     HandMotion hand(touch.path);
     std::int64_t ticks = 0;
     const auto one = [&] {
-        DeviceState device;
+        TickInput device;
         device.time = 1e-3 * static_cast<double>(++ticks);
         device.position = device_from_physical(settings.transform, hand.next());
         benchmark::DoNotOptimize(render(renderer, device).force);

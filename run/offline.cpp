@@ -207,7 +207,7 @@ OfflineSummary render_offline(Renderer& renderer, const io::Trajectory& trajecto
         const Vec3 hand =
             device_from_physical(renderer.settings.transform, trajectory.position[at]);
         if (sinks.change) sinks.change(renderer, i);
-        DeviceState device{trajectory.time[at], hand, true};
+        TickInput device{trajectory.time[at], hand, true};
         if (!trajectory.orientation.empty()) {
             device.orientation = renderer.settings.transform.rotation.transpose() *
                                  trajectory.orientation[at].toRotationMatrix();

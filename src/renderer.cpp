@@ -72,7 +72,7 @@ double turning_of(const RendererSettings& settings) {
 }
 
 /// Input of the force, with a point, with layers or with a tool.
-ForceInput force_input(Renderer& renderer, const DeviceState& device, const Tick& tick,
+ForceInput force_input(Renderer& renderer, const TickInput& device, const Tick& tick,
                        const std::optional<LayersUpdate>& layers) {
     const ProxyUpdate& at = tick.proxy;
     const RendererSettings& settings = renderer.settings;
@@ -168,8 +168,8 @@ Pull pull_of(const Renderer& renderer, const Vec3& hip) {
 }
 
 /// The proxy's part of a tick, with what may press it through surfaces.
-Moved move_proxy(Renderer& renderer, const DeviceState& device, const Vec3& hip,
-                 const Proxy& before, StepObserver observer) {
+Moved move_proxy(Renderer& renderer, const TickInput& device, const Vec3& hip, const Proxy& before,
+                 StepObserver observer) {
     const RendererSettings& settings = renderer.settings;
     // A position that is not trusted moves nothing.
     if (!device.valid) return {refuse_update(renderer.proxy, felt_field(renderer), hip), {}};
@@ -254,7 +254,7 @@ ToolUpdate move_tool(Renderer& renderer, const Pose& hand, const ToolSettings& a
 }
 
 /// The proxy's part of a tick of a tool: six degrees of freedom.
-void feel_with_tool(Renderer& renderer, const DeviceState& device, Tick& tick,
+void feel_with_tool(Renderer& renderer, const TickInput& device, Tick& tick,
                     PoseObserver observer) {
     const RendererSettings& settings = renderer.settings;
     const DeviceTransform& transform = settings.transform;
@@ -286,8 +286,8 @@ void feel_with_tool(Renderer& renderer, const DeviceState& device, Tick& tick,
 }
 
 /// The same for a point, with layers or without.
-std::optional<LayersUpdate> feel_with_point(Renderer& renderer, const DeviceState& device,
-                                            Tick& tick, StepObserver observer) {
+std::optional<LayersUpdate> feel_with_point(Renderer& renderer, const TickInput& device, Tick& tick,
+                                            StepObserver observer) {
     const RendererSettings& settings = renderer.settings;
     const Vec3 hip = physical_from_device(settings.transform, device.position);
     const Proxy before = renderer.proxy;
@@ -452,7 +452,7 @@ std::string isovalue_warning(const Field& field, double isovalue) {
     return {};
 }
 
-Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer, Clock clock,
+Tick render(Renderer& renderer, const TickInput& device, StepObserver observer, Clock clock,
             PoseObserver pose_observer) {
     const RendererSettings& settings = renderer.settings;
     look_at_layers(renderer);

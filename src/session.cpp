@@ -253,7 +253,7 @@ SessionTick advance(Session& session, double time, const DeviceReading& reading,
     // Only such an age shows that the reading was measured lately.
     const bool fresh = std::isfinite(reading.age) && reading.age >= 0 &&
                        reading.age <= session.renderer.settings.force.stale_after;
-    DeviceState state;
+    TickInput state;
     state.time = time;
     state.valid = reading.status == DeviceStatus::ready && fresh &&
                   plausible(session, time, reading.position);

@@ -30,7 +30,7 @@ extern "C" PALPATE_API palpate_status palpate_renderer_render(palpate_renderer* 
         Renderer& r = given(renderer, "renderer").renderer;
         const palpate_hand at = taken(hand, "hand");
         size_of(given(out, "out"), "out");
-        DeviceState state{.time = at.time, .position = vec3(at.position), .valid = !at.invalid};
+        TickInput state{.time = at.time, .position = vec3(at.position), .valid = !at.invalid};
         state.orientation = quaternion(at.orientation).toRotationMatrix();
         give(out, "out", felt_from(render(r, state)));
     });

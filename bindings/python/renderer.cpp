@@ -40,14 +40,14 @@ void change(SharedRenderer& renderer, const Change& how) {
 Tick tick(SharedRenderer& renderer, double time, const Vec3& position,
           const std::optional<Quaternion>& orientation, bool valid, bool armed, bool released,
           const Vec3& pointing) {
-    DeviceState state{time, position, valid, armed, released, pointing};
+    TickInput state{time, position, valid, armed, released, pointing};
     if (orientation) state.orientation = orientation->normalized().toRotationMatrix();
     return render(renderer.changeable(), state);
 }
 
 /// The hand of many ticks, which point nowhere unless that is given.
-std::vector<DeviceState> states_from(const Doubles& time, const Doubles& position,
-                                     const std::optional<Doubles>& pointing) {
+std::vector<TickInput> states_from(const Doubles& time, const Doubles& position,
+                                   const std::optional<Doubles>& pointing) {
     const std::vector<Vec3> places = points_from(position, "position");
     const std::vector<Vec3> tips = pointing ? points_from(*pointing, "pointing")
                                             : std::vector<Vec3>(places.size(), Vec3::Zero());
@@ -55,7 +55,7 @@ std::vector<DeviceState> states_from(const Doubles& time, const Doubles& positio
         tips.size() != places.size()) {
         throw std::invalid_argument("as many times, positions and pointings are needed");
     }
-    std::vector<DeviceState> states(places.size());
+    std::vector<TickInput> states(places.size());
     const GilReleasedForRows unlocked(states.size());
     for (std::size_t i = 0; i < states.size(); ++i) {
         states[i].time = time.data()[i];
@@ -96,7 +96,7 @@ py::dict follow_ticks(SharedRenderer& renderer, const Doubles& time, const Doubl
                       const ProgressFunction& progress) {
     std::optional<Moving> moving;
     if (!alternatives) moving.emplace(renderer);
-    const std::vector<DeviceState> states = states_from(time, position, pointing);
+    const std::vector<TickInput> states = states_from(time, position, pointing);
     std::vector<Tick> ticks(states.size());
     ReportedItems slices(progress_of(progress), ticks.size(), updates_in_slice);
     if (alternatives) {
@@ -132,7 +132,7 @@ py::array_t<double> batch_ns(SharedRenderer& renderer, const Doubles& time, cons
     using SteadyClock = std::chrono::steady_clock;
     if (batch == 0) throw std::invalid_argument("batch: at least one tick is needed");
     Moving moving(renderer);
-    const std::vector<DeviceState> states = states_from(time, position, std::nullopt);
+    const std::vector<TickInput> states = states_from(time, position, std::nullopt);
     std::vector<double> times(states.size() / batch);
     ReportedItems slices(progress_of(progress), times.size(), batches_in_slice);
     moving.without_gil([&](Renderer& own) {

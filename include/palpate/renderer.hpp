@@ -31,7 +31,7 @@ Vec3 physical_from_device(const DeviceTransform& transform, const Vec3& device);
 Vec3 device_from_physical(const DeviceTransform& transform, const Vec3& physical);
 
 /// The device's input to a tick.
-struct DeviceState {
+struct TickInput {
     double time = 0;               ///< [s], strictly increasing
     Vec3 position = Vec3::Zero();  ///< [device mm], device axes
     bool valid = true;             ///< false: stale or broken input. No force, proxy stays
@@ -157,7 +157,7 @@ std::string isovalue_warning(const Field& field, double isovalue);
 /// (UpdateStatus::waiting): the force falls to zero within its rate limit, and returns with the
 /// ramp when the samples are in memory. Layers and penetrability need the whole way of the hand in
 /// memory. `observer` is for a point, `pose_observer` for a tool.
-Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer = {},
+Tick render(Renderer& renderer, const TickInput& device, StepObserver observer = {},
             Clock clock = nullptr, PoseObserver pose_observer = {});
 
 }  // namespace palpate

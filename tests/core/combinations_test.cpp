@@ -73,7 +73,7 @@ class Judge {
         tally_.versions += before != source_.samples();
         if (random_.chance(0.02)) aside_ = random_.uniform(0, 4) * random_.direction();
         const DeviceReading reading = loop_.at(part);
-        DeviceState state;
+        TickInput state;
         state.time = ++tally_.ticks * period;
         state.position = reading.position + aside_;
         state.orientation = reading.orientation;
@@ -96,7 +96,7 @@ class Judge {
     bool all_in_memory(const Vec3& from, const Vec3& hand) {
         return is_resident(renderer().field, from, 2 * (hand - from).norm() + 8);
     }
-    Tick feel_tool(const DeviceState& state) {
+    Tick feel_tool(const TickInput& state) {
         ToolProxy& proxy = *renderer().tool_proxy;
         const ToolState before = proxy;
         const Tick tick = render(renderer(), state, {}, nullptr, of_tool_.observer());
@@ -110,7 +110,7 @@ class Judge {
         of_tool_.judge(proxy, before, {tick.proxy.hip, tick.tool.hand}, r);
         return tick;
     }
-    Tick feel_point(const DeviceState& state) {
+    Tick feel_point(const TickInput& state) {
         const Proxy proxy = renderer().proxy;
         const LayerState layers = renderer().layers;
         path_.clear();

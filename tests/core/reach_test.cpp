@@ -28,8 +28,8 @@ Volume wall() {
     return {geometry, std::move(samples)};
 }
 
-DeviceState hand_at(const Vec3& position, int tick) {
-    DeviceState state;
+TickInput hand_at(const Vec3& position, int tick) {
+    TickInput state;
     state.time = (tick + 1) * period;
     state.position = position;
     return state;
@@ -241,7 +241,7 @@ TEST(Reach, a_tool_waits_too_and_none_of_its_points_leaves_what_is_in_memory) {
         }
         at += random.chance(0.03) ? random.direction() * 60 : random.direction() * 0.5;
         at = at.cwiseMax(Vec3(0, 0, 0)).cwiseMin(Vec3(150, 140, 170));
-        DeviceState state = hand_at(at, tick);
+        TickInput state = hand_at(at, tick);
         state.orientation = random.orientation().toRotationMatrix();
         const Pose before = renderer.tool_proxy->pose;
         const Tick now = render(renderer, state);

@@ -34,7 +34,7 @@ class DeviceHand {
   public:
     DeviceHand(const Field& field, const DeviceTransform& transform, std::uint64_t seed)
         : hand_(field.geometry(), seed, {8, 1, 0, 1, 1, 2}), transform_(transform) {}
-    DeviceState next() {
+    TickInput next() {
         return {period * ++i_, device_from_physical(transform_, hand_.next()), true};
     }
 
@@ -68,7 +68,7 @@ TEST(Renderer, does_not_allocate_with_every_effect_on) {
     delete new int;
     const std::int64_t before = allocation_count();
     for (int i = 0; i < scaled(100000); ++i) {
-        DeviceState device = hand.next();
+        TickInput device = hand.next();
         if (i % 1000 == 999) device.position[0] = std::numeric_limits<double>::quiet_NaN();
         if (i % 1500 == 0) renderer.proxy.isovalue = 60 + i % 160;
         const Tick at = render(renderer, device, observer);
@@ -91,7 +91,7 @@ TEST(Renderer, is_deterministic_and_a_copy_continues_identically) {
     DeviceHand hand(field, settings.transform, 2);
     for (int i = 0; i < scaled(20000); ++i) {
         if (i % 5000 == 2500) copy = first;
-        const DeviceState device = hand.next();
+        const TickInput device = hand.next();
         const Tick a = render(first, device);
         expect_same(a, render(second, device), i);
         if (i >= scaled(2500) && i >= 2500) expect_same(a, render(copy, device), i);
@@ -241,7 +241,7 @@ TEST(Renderer, texture_is_fixed_in_physical_space_and_keeps_the_strength) {
     int turned = 0, i = 0;
     for (double x = 1; x < 7; x += 0.02, ++i) {
         const Vec3 hip(x, 3.3, i == 0 ? 29 : 30.6);
-        const DeviceState device{i * period, device_from_physical(settings.transform, hip), true};
+        const TickInput device{i * period, device_from_physical(settings.transform, hip), true};
         const Tick smooth = render(a, device);
         const Tick bumpy = render(b, device);
         ASSERT_EQ(smooth.proxy.scp, bumpy.proxy.scp);

@@ -94,7 +94,7 @@ TEST(Renderer, a_clock_times_the_proxy_update_and_changes_nothing_else) {
     const Clock seven_a_read = []() noexcept -> std::int64_t { return 7 * ++reads; };
     Renderer plain = make_renderer(ramp_field(), 30), timed = plain;
     for (int i = 0; i < 100; ++i) {
-        const DeviceState device{i * period, at_depth(28 + 0.05 * i)};
+        const TickInput device{i * period, at_depth(28 + 0.05 * i)};
         const Tick one = render(plain, device), other = render(timed, device, {}, seven_a_read);
         ASSERT_EQ(one.update_ns, 0);
         ASSERT_EQ(other.update_ns, 7);
@@ -128,19 +128,19 @@ TEST(Renderer, the_proxy_is_the_methods_own_for_every_method) {
 }
 
 TEST(Renderer, a_broken_position_leaves_the_proxy_as_it_is_and_stops_the_force) {
-    const std::vector<DeviceState> broken{
+    const std::vector<TickInput> broken{
         {0, {not_a_number, 4, 31}, true},  {0, {4, not_a_number, 31}, true},
         {0, {4, 4, not_a_number}, true},   {0, {infinity, 4, 31}, true},
         {0, {4, 4, -infinity}, true},      {0, {1e300, 4, 31}, true},
         {0, {4, 1e12, 31}, true},          {0, {4, 4, 5}, false},
         {0, {not_a_number, 4, 31}, false},
     };
-    for (const DeviceState& state : broken) {
+    for (const TickInput& state : broken) {
         SCOPED_TRACE(state.position.transpose());
         Resting hand({});
         ASSERT_NEAR(hand.next().force[2], -0.5, 1e-9);
         const Proxy before = hand.renderer.proxy;
-        DeviceState device = state;
+        TickInput device = state;
         device.time = hand.time += period;
         const Tick stopped = render(hand.renderer, device);
         EXPECT_EQ(stopped.force, Vec3::Zero());
