@@ -83,7 +83,7 @@ std::shared_ptr<const Samples> RecordedSamples::bricks_of(const BricksOf& bricks
                                     ", but the last was " + std::to_string(bricks_version_));
     }
     std::vector<ResidentBricks::Change> changes;
-    for (const BricksOf::Brick& brick : bricks.bricks) {
+    for (const BricksOf::Change& brick : bricks.bricks) {
         const Index3& count = bricks_->count();
         if ((brick.at.array() < 0).any() || (brick.at.array() >= count.array()).any()) {
             throw std::invalid_argument("a brick outside the grid");

@@ -129,13 +129,13 @@ bool are_in_one(const Index3& a, const Index3& b) {
 }  // namespace
 
 template <int count>
-Field::Run Field::stored_run(const Index3& low) const {
+Field::Rows Field::stored_rows(const Index3& low) const {
     const Index3 high(low[0] + count - 1, low[1] + count - 1, low[2] + count - 1);
     if (!has_sample(low) || !has_sample(high)) return {};
     const std::size_t bytes = size_of(type_);
     const auto in = [&](const Brick& brick, std::ptrdiff_t place, std::ptrdiff_t row) {
-        return Run{brick.samples.get() + static_cast<std::size_t>(place) * bytes, row, row * row,
-                   false};
+        return Rows{brick.samples.get() + static_cast<std::size_t>(place) * bytes, row, row * row,
+                    false};
     };
     const Brick* const resident =
         resident_ && are_in_one(low, high) ? resident_->of_sample(low) : nullptr;
@@ -178,12 +178,12 @@ std::array<std::uint8_t, std::size_t{count} * count * count> Field::labels_of(
     const Index3& low) const noexcept {
     std::array<std::uint8_t, std::size_t{count} * count * count> labels;
     std::uint8_t* out = labels.data();
-    const Run run = cover_.same_grid ? cover_.labels->stored_run<count>(low) : Run{};
-    const auto* const label = static_cast<const std::uint8_t*>(run.first);
+    const Rows rows = cover_.same_grid ? cover_.labels->stored_rows<count>(low) : Rows{};
+    const auto* const label = static_cast<const std::uint8_t*>(rows.first);
     for (int z = 0; z < count; ++z) {
         for (int y = 0; y < count; ++y) {
             for (int x = 0; x < count; ++x) {
-                *out++ = label ? label[x + y * run.row + z * run.slice]
+                *out++ = label ? label[x + y * rows.row + z * rows.slice]
                                : label_at(low + Index3(x, y, z));
             }
         }
@@ -225,10 +225,10 @@ void Field::look() noexcept {
 }
 
 template <int count>
-Field::Run Field::run_of(const Index3& low) const {
+Field::Rows Field::rows_of(const Index3& low) const {
     if (offset_ != 0 || moment_.weight > 0) return {};
     if (cover_.labels && ((cover_.solid_labels & 1U) != 0 || is_labelled<count>(low))) return {};
-    return stored_run<count>(low);
+    return stored_rows<count>(low);
 }
 
 template <int count>
@@ -261,12 +261,12 @@ std::array<double, std::size_t{count} * count * count> Field::gathered(const Ind
             return (sign_ > 0 ? samples_->maximum() : samples_->minimum()) - offset_;
         };
         const Index3 none = Index3::Zero(), all = Index3::Constant(count);
-        const Run run = stored_run<count>(low);
-        if (run.in_frame) {
+        const Rows rows = stored_rows<count>(low);
+        if (rows.in_frame) {
             gather(none, all, in_frames);
-        } else if (const auto* brick = static_cast<const T*>(run.first)) {
+        } else if (const auto* brick = static_cast<const T*>(rows.first)) {
             gather(none, all, [&](int x, int y, int z) {
-                return double(brick[x + y * run.row + z * run.slice]) - offset_;
+                return double(brick[x + y * rows.row + z * rows.slice]) - offset_;
             });
         } else {  // across the border of the grid or of bricks
             samples.fill(background_ - offset_);
@@ -290,19 +290,19 @@ std::array<double, std::size_t{count} * count * count> Field::gathered(const Ind
     return samples;
 }
 // Used by the header and by layers.
-template Field::Run Field::run_of<3>(const Index3&) const;
+template Field::Rows Field::rows_of<3>(const Index3&) const;
 template std::array<double, 27> Field::gathered<3>(const Index3&) const;
 template std::array<std::uint8_t, 27> Field::labels_of<3>(const Index3&) const noexcept;
 template bool Field::is_labelled<3>(const Index3&) const noexcept;
 
 CellSamples Field::other_cell(const Index3& cell) const {
-    const Run run = run_of<2>(cell);
-    if (!run.first) return gathered<2>(cell);
+    const Rows rows = rows_of<2>(cell);
+    if (!rows.first) return gathered<2>(cell);
     return with_type(type_, [&](auto zero) -> CellSamples {
-        const auto* p = static_cast<const decltype(zero)*>(run.first);
-        const auto* q = p + run.slice;
-        return {double(p[0]), double(p[1]), double(p[run.row]), double(p[run.row + 1]),
-                double(q[0]), double(q[1]), double(q[run.row]), double(q[run.row + 1])};
+        const auto* p = static_cast<const decltype(zero)*>(rows.first);
+        const auto* q = p + rows.slice;
+        return {double(p[0]), double(p[1]), double(p[rows.row]), double(p[rows.row + 1]),
+                double(q[0]), double(q[1]), double(q[rows.row]), double(q[rows.row + 1])};
     });
 }
 

@@ -107,7 +107,7 @@ class Field {
     }
     /// Samples that can be read directly from one array: the address of the first one, and the
     /// distances of neighbours in y and z. Null: they cannot.
-    struct Run {
+    struct Rows {
         const void* first = nullptr;
         std::ptrdiff_t row = 0, slice = 0;
         bool in_frame = false;  ///< of the moment, not in a brick
@@ -116,7 +116,7 @@ class Field {
     struct Gathered {
         bool done = false;  ///< the caller resets it for another place
         int work = 0;       ///< of the slow reads so far (ProxySettings::step_budget)
-        Run run;            ///< their place in memory. Null: they were gathered into `samples`
+        Rows rows;          ///< their place in memory. Null: they were gathered into `samples`
         Neighbours samples;
     };
     template <class Visit>
@@ -147,9 +147,9 @@ class Field {
     /// The stored samples of a block of count^3 samples, 2 or 3 along each axis. Null if the field
     /// has other values there, for example edited ones.
     template <int count>
-    Run stored_run(const Index3& low) const;
+    Rows stored_rows(const Index3& low) const;
     template <int count>
-    Run run_of(const Index3& low) const;
+    Rows rows_of(const Index3& low) const;
     template <int count>
     std::array<double, std::size_t{count} * count * count> gathered(const Index3& low) const;
     CellSamples other_cell(const Index3& cell) const;
@@ -231,13 +231,13 @@ inline auto Field::visit_around(const Index3& at, Visit&& visit, Gathered& kept)
         const Index3 low(at[0] - 1, at[1] - 1, at[2] - 1);
         kept.done = true;
         kept.work += work_of_samples();
-        kept.run = run_of<3>(low);
-        if (!kept.run.first) kept.samples = gathered<3>(low);
+        kept.rows = rows_of<3>(low);
+        if (!kept.rows.first) kept.samples = gathered<3>(low);
     }
-    if (const Run& run = kept.run; run.first) {
+    if (const Rows& rows = kept.rows; rows.first) {
         return with_type(type_, [&](auto zero) {
-            const auto* first = static_cast<const decltype(zero)*>(run.first);
-            return visit(first + 1 + run.row + run.slice, run.row, run.slice);
+            const auto* first = static_cast<const decltype(zero)*>(rows.first);
+            return visit(first + 1 + rows.row + rows.slice, rows.row, rows.slice);
         });
     }
     return visit(static_cast<const double*>(kept.samples.data()) + 13, std::ptrdiff_t{3},

@@ -70,7 +70,7 @@ struct Proxy {
     double recovery_reach = 0;  ///< [voxel] how far recovery has searched for free space so far
     /// Unit normal of the surface that was touched before the field changed, physical axes. Zero:
     /// none
-    Vec3 ahead = Vec3::Zero();
+    Vec3 normal_before = Vec3::Zero();
     // These save time on a cubic field and change no result.
     KeptPiece kept;
     KeptSamples kept_samples;  ///< from which its piece was computed

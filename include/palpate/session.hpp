@@ -51,11 +51,11 @@ struct FramesOf {
 /// Bricks of a large grid that were loaded into memory or removed from it.
 struct BricksOf {
     std::uint64_t version = 0;  ///< of the samples before
-    struct Brick {
+    struct Change {
         Index3 at;
         int level = 0;  ///< of detail, see Brick; -1: removed
     };
-    std::vector<Brick> bricks;
+    std::vector<Change> bricks;
 };
 using Recipe = std::variant<EditOf, FramesOf, BricksOf>;
 

@@ -12,11 +12,11 @@
 
 namespace palpate {
 
-static io::Json to_value(const BricksOf::Brick& brick) {
+static io::Json to_value(const BricksOf::Change& brick) {
     return {brick.at[0], brick.at[1], brick.at[2], brick.level};
 }
 
-static void from_value(const io::Json& json, const std::string& name, BricksOf::Brick& brick) {
+static void from_value(const io::Json& json, const std::string& name, BricksOf::Change& brick) {
     std::array<int, 4> numbers{};
     if (!json.is_array() || json.size() != numbers.size()) io::wrong_member(name, "four numbers");
     for (std::size_t i = 0; i < numbers.size(); ++i) {

@@ -59,7 +59,7 @@ static void members(auto& v, Is<Proxy> auto& s) {
     v("placed", s.placed);
     v("sliding", s.sliding);
     v("recovery_reach", s.recovery_reach);
-    v("ahead", s.ahead);
+    v("ahead", s.normal_before);
 }
 
 static void members(auto& v, Is<MotorHeat> auto& s) {

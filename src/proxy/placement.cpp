@@ -59,8 +59,8 @@ Vec3 normal_at(const Proxy& proxy, const Field& field) {
 
 void field_will_change(Proxy& proxy, const Field& field) {
     // If there are several changes before the next update, the first one had the touched surface.
-    if (proxy.mode == Mode::constrained && proxy.ahead.isZero(0)) {
-        proxy.ahead = normal_at(proxy, field);
+    if (proxy.mode == Mode::constrained && proxy.normal_before.isZero(0)) {
+        proxy.normal_before = normal_at(proxy, field);
     }
 }
 

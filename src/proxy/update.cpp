@@ -102,7 +102,8 @@ Update<AnySite>::Update(Proxy& proxy, const Field& field, const Vec3& hip_index,
     recovering = !recover(site, progress, proxy.recovery_reach) || site.is_beyond_behind();
     searched = std::max(from_start(), proxy.recovery_reach * spacing.minCoeff());
     if (recovering) return;
-    const bool pushed = !proxy.ahead.isZero(0) && push_ahead(site, progress, start, proxy.ahead);
+    const bool pushed =
+        !proxy.normal_before.isZero(0) && push_ahead(site, progress, start, proxy.normal_before);
     searched = std::max(searched, from_start());
     if (!pushed) prefer_free_hip(site, progress, start);
 }
@@ -117,7 +118,7 @@ ProxyUpdate finish_update(Proxy& proxy, Update<AnySite>& update, const Vec3& hip
     proxy.scp = site.point;
     proxy.interpolation = site.field.interpolation();
     proxy.turned = site.turned;
-    if (rest != Rest::recovering) proxy.ahead.setZero();
+    if (rest != Rest::recovering) proxy.normal_before.setZero();
     proxy.scp_physical =
         rest == Rest::at_target ? hip : physical_from_index(update.progress.geometry, site.index());
     proxy.mode = rest == Rest::on_surface || rest == Rest::recovering ||

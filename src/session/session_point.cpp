@@ -165,7 +165,8 @@ void check(const SessionPoint& point, const RendererSettings& settings, const Fi
     check_isovalue(point.isovalue_without_layers.value_or(proxy.isovalue), field.solid);
     require(is_number(proxy.isovalue) && is_number(proxy.behind.value_or(0)),
             "a level is not a number");
-    require(proxy.recovery_reach >= 0 && proxy.recovery_reach <= 1e7 && is_within(proxy.ahead, 2),
+    require(proxy.recovery_reach >= 0 && proxy.recovery_reach <= 1e7 &&
+                is_within(proxy.normal_before, 2),
             "the proxy's state is out of range");
     require(!proxy.placed || proxy.interpolation == field.interpolation,
             "the proxy is of another field");

@@ -207,13 +207,13 @@ TEST(LayersFelt, a_field_that_changes_under_labels_leaves_no_normal_behind) {
     ASSERT_EQ(live.at(40).layers.touched, 0);
     apply(live.session, command::Samples{ramp_field().shared_samples()});
     live.at(40);
-    EXPECT_TRUE(live.session.renderer.proxy.ahead.isZero(0)) << "labels stand still";
+    EXPECT_TRUE(live.session.renderer.proxy.normal_before.isZero(0)) << "labels stand still";
     live.use(labels(1, 40, 20, {20}));
     live.at(39);
     live.go(39, 40);
     ASSERT_EQ(live.at(40).layers.touched, 1);
     apply(live.session, command::Samples{ramp_field().shared_samples()});
-    EXPECT_LT((live.session.renderer.proxy.ahead - Vec3(0, 0, -1)).norm(), 1e-9);
+    EXPECT_LT((live.session.renderer.proxy.normal_before - Vec3(0, 0, -1)).norm(), 1e-9);
     live.at(40);
-    EXPECT_TRUE(live.session.renderer.proxy.ahead.isZero(0));
+    EXPECT_TRUE(live.session.renderer.proxy.normal_before.isZero(0));
 }

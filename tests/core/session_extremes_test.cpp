@@ -185,7 +185,7 @@ bool is_finite(const Session& s) {
     const Renderer& r = s.renderer;
     const DeviceTransform& t = r.settings.transform;
     return is_finite(r.layers) && r.proxy.scp.folded.allFinite() &&
-           r.proxy.scp_physical.allFinite() && r.proxy.ahead.allFinite() &&
+           r.proxy.scp_physical.allFinite() && r.proxy.normal_before.allFinite() &&
            std::isfinite(r.proxy.recovery_reach) && !std::isnan(r.proxy.isovalue) &&
            !std::isnan(r.isovalue_without_layers.value_or(0)) && r.force.force.allFinite() &&
            r.force.velocity.allFinite() && r.force.hand.allFinite() && r.force.torque.allFinite() &&
