@@ -12,7 +12,7 @@ std::filesystem::path sample_volume_path() {
     const char* const name = "visible_human_head.nrrd";
     if (const auto file = bundled(name)) return *file;
     throw InputError(std::string(name) +
-                     ": the sample volume was not found; reinstall Palpate, or name a volume");
+                     ": the sample head was not found; reinstall Palpate, or name a volume");
 }
 
 }  // namespace palpate::io

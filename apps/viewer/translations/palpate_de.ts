@@ -3430,8 +3430,8 @@ Ein Zug endet zwei Sekunden, nachdem die Hand alle Schichten verlassen hat.</tra
         <translation>DICOM-Serien, TIFF-Schichtbilder</translation>
     </message>
     <message>
-        <source>Feel the sample volume</source>
-        <translation>Das Beispielvolumen fühlen</translation>
+        <source>Feel the sample head</source>
+        <translation>Den Beispielkopf fühlen</translation>
     </message>
     <message>
         <source>A CT scan of a head</source>

@@ -55,8 +55,7 @@ Welcome::Welcome(QWidget* parent)
         button("welcome_open", tr("Open a volume…"),
                tr("NRRD, MetaImage, NIfTI, DICOM, TIFF, VTI, raw; a session or a recording"));
     auto* folder = button("welcome_folder", tr("Open a folder…"), tr("DICOM series, TIFF slices"));
-    auto* sample =
-        button("welcome_sample", tr("Feel the sample volume"), tr("A CT scan of a head"));
+    auto* sample = button("welcome_sample", tr("Feel the sample head"), tr("A CT scan of a head"));
     sample->setVisible(has_sample());
     connect(open, &QCommandLinkButton::clicked, this, &Welcome::open_asked);
     connect(folder, &QCommandLinkButton::clicked, this, &Welcome::folder_asked);
