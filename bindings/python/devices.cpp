@@ -48,7 +48,7 @@ void bind_devices(py::module_& module) {
         .field("renders_torque", &I::renders_torque, "False: torque is ignored.")
         .field("has_orientation", &I::has_orientation, "Readings turn.")
         .field("has_gripper", &I::has_gripper, "Readings have an opening.")
-        .field("buttons", &I::buttons, {"How many.", {0, 32, false, "from 0 to 32"}})
+        .field("buttons", &I::buttons, {"Number of buttons.", {0, 32, false, "from 0 to 32"}})
         .done();
     using R = DeviceReading;
     Record<R>(module, "DeviceReading", "The newest measurement of a device.")

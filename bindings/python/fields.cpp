@@ -93,7 +93,7 @@ void bind_samples(py::module_& module) {
                 for (const Frame& frame : self.frames()) times.push_back(frame.time);
                 return array_from(std::move(times));
             },
-            "Of the frames [s].")
+            "Times of the frames [s].")
         .def(
             "volume",
             [](const Samples& self, double time) {
@@ -145,7 +145,7 @@ void bind_fields(py::module_& module) {
         .def_property_readonly("interpolation", &Field::interpolation)
         .def_property_readonly("background", &Field::background, "[data units]")
         .def_property_readonly("range", &Field::range,
-                               "Greatest less least density, background included [data units].")
+                               "Largest minus smallest density, background included [data units].")
         .def(
             "value", &values_at, py::arg("points"),
             "Density [data units], shape (n,), at physical points [mm], shape (n, 3). NaN where a\n"

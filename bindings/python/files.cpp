@@ -164,7 +164,8 @@ void bind_loaded(py::module_& module) {
                       "Sentences on how it was read: conversions, gaps, missing spacing.")
         .def_readonly("isovalue", &run::LoadedVolume::isovalue,
                       "A good level [data units] of a synthetic volume; else None.")
-        .def_readonly("time_steps", &run::LoadedVolume::time_steps, "Frames of a sequence.")
+        .def_readonly("time_steps", &run::LoadedVolume::time_steps,
+                      "Number of frames of a sequence.")
         .def_property_readonly("values", &values_of,
                                "What the header says of values: modality, units, window (centre,\n"
                                "width), padding, labels (number to name).")

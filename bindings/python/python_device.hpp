@@ -98,14 +98,14 @@ void add_session(py::class_<Owner, std::shared_ptr<Owner>>& kind) {
         const GilReleased unlocked;
         owner.start();
     };
-    kind.def("start", start, "Once.")
+    kind.def("start", start, "Starts the servo. May be called once.")
         .def("stop", &stop_session<Owner>, Unlocked(),
              "Zero force, for good, and the end of all threads: a device in Python is written a\n"
              "last zero and closed. Raises DeviceError if its functions do not return within 2 s:\n"
              "another thread then writes the zero, and the error says whether that failed, too.\n"
              "Raises RuntimeError in a forked child, which has no servo.")
         .def("snapshot", &Owner::snapshot, "The newest tick, a Snapshot; None before the first.")
-        .def("report", &Owner::report, "ServoReport")
+        .def("report", &Owner::report, "The ServoReport of all ticks so far.")
         .def_property_readonly(
             "privileges", [](const Owner& o) { return std::vector<std::string>(o.privileges()); },
             "A sentence for each privilege of real time. After start().")

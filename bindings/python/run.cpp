@@ -203,7 +203,8 @@ void bind_playback(py::class_<LiveRun, std::shared_ptr<LiveRun>>& run) {
     using R = LiveRun;
     run.def(
            "play", [](R& r, double speed) { r.here().data().player().play(speed); },
-           py::arg("speed"), Unlocked(), "Of a sequence: seconds of it per second; 0 pauses.")
+           py::arg("speed"), Unlocked(),
+           "Plays a sequence at this speed, in seconds of it per second; 0 pauses.")
         .def(
             "seek", [](R& r, double time) { r.here().data().player().seek(time); }, py::arg("time"),
             Unlocked(), "Goes to a time of the sequence [s].")
@@ -277,7 +278,8 @@ void bind_run(py::module_& module) {
             "The number of its ticks. The session goes on.")
         .def("field", &R::field_now, Unlocked(), "A copy of the Field felt, edits included.")
         .def_property_readonly("device", &R::device, "DeviceInfo")
-        .def_property_readonly("isovalue", &R::isovalue, "Asked for last [data units].");
+        .def_property_readonly("isovalue", &R::isovalue,
+                               "The isovalue that was asked for last [data units].");
     add_session(live);
     bind_playback(live);
     bind_editing(live);

@@ -66,12 +66,13 @@ void bind_scenes(py::module_& module) {
         "A synthetic volume: 'NAME' or 'NAME:WxHxD' of scene_names(), or NAME on a grid of yours.");
     module.def("scene_names", &scenes::volume_names, "The names of all synthetic volumes.");
     using M = scenes::MotionSettings;
-    Record<M>(module, "MotionSettings", "Of motion().")
-        .field("rate_hz", &M::rate_hz, {"Samples a second.", ranges::positive})
+    Record<M>(module, "MotionSettings", "Settings of motion().")
+        .field("rate_hz", &M::rate_hz, {"Samples per second.", ranges::positive})
         .field("duration_s", &M::duration_s, {"[s]", ranges::not_negative})
         .field("speed_mm_s", &M::speed_mm_s, {"Never faster [mm/s].", ranges::positive})
         .field("depth_mm", &M::depth_mm, {"How deep the hand presses [mm].", ranges::not_negative})
-        .field("seed", &M::seed, {"Where from, which way, in which order.", ranges::any})
+        .field("seed", &M::seed,
+               {"Of the start, the direction and the order of the motion.", ranges::any})
         .done();
     module.def("motion", &motion, py::arg("name"), py::arg("field"), py::arg("isovalue"),
                py::arg_v("settings", M{}, "MotionSettings()"),

@@ -199,7 +199,7 @@ void bind_render_setup(py::module_& module) {
             },
             "A Tool, or text: 'point', 'sphere:RADIUS', 'needle', a mesh file, ... [mm]")
         .field("tool_spacing", &S::tool_spacing,
-               {"Of a tool's points [mm]; None: half a voxel.", ranges::positive})
+               {"Distance of a tool's points [mm]; None: half a voxel.", ranges::positive})
         .field("friction", &S::friction, "Friction or None.")
         .field("force", &S::asked_force, "ForceSettings")
         .alias("limit")

@@ -46,8 +46,8 @@ def by_name(body):
 
 
 def doc_of(node, value):
-    """The docstring of a compiled name, or else that of the source."""
-    if value is not None:
+    """The docstring of a name of the module, or else that of the source. The default of a field has none of its own."""
+    if inspect.isroutine(value) or inspect.isclass(value) or isinstance(value, property) or hasattr(value, "raw"):
         return value.__doc__
     return ast.get_docstring(node) if hasattr(node, "body") else ""
 

@@ -30,8 +30,10 @@ def test_each_member_of_a_class_is_in_the_reference():
             assert not missing, (name, missing)
 
 
-def test_signatures_of_the_binding_do_not_get_into_the_text():
-    assert "_palpate" not in "".join(PAGES.values()).replace("\\", "")
+def test_signatures_of_the_binding_and_texts_of_other_types_do_not_get_into_the_text():
+    text = "".join(PAGES.values()).replace("\\", "")
+    assert "_palpate" not in text
+    assert "Convert a number or string" not in text  # of int
 
 
 def test_no_function_class_or_method_is_without_a_text():

@@ -5,7 +5,7 @@ from typing import Any
 
 
 class Error(Exception):
-    """Base of the exceptions below."""
+    """Base of all exceptions of Palpate."""
 
 
 class InputError(Error, ValueError):
