@@ -1,6 +1,7 @@
 // Shared by the readers in the helper program. See the header.
 #include "io/helper/decode.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -100,9 +101,52 @@ void check_geometry(const Geometry& geometry) {
     }
 }
 
+double distance_between(const Geometry& a, const Geometry& b) {
+    double most = 0;
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        const Vec3 ends(corner & 1, corner >> 1 & 1, corner >> 2);
+        const Vec3 index = ends.cwiseProduct(a.size.cast<double>() - Vec3::Ones());
+        most =
+            std::max(most, (physical_from_index(a, index) - physical_from_index(b, index)).norm());
+    }
+    return most;
+}
+
+std::optional<Geometry> straightened(const Geometry& geometry) {
+    constexpr double most = 0.01;  // of a cosine, and of a length
+    const auto farthest = [](const Mat3& direction) {
+        return (direction.transpose() * direction - Mat3::Identity()).cwiseAbs().maxCoeff();
+    };
+    if (!geometry.direction.allFinite()) return std::nullopt;
+    if (farthest(geometry.direction) < 1e-4) return geometry;
+    Geometry nearest = geometry;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double length = geometry.direction.col(axis).norm();
+        if (std::abs(length - 1) > most) return std::nullopt;
+        nearest.direction.col(axis) /= length;
+        nearest.spacing[axis] *= length;
+    }
+    if (farthest(nearest.direction) > most) return std::nullopt;
+    nearest = orthonormal(nearest);
+    if (distance_between(geometry, nearest) > 0.5 * nearest.spacing.minCoeff()) return std::nullopt;
+    return nearest;
+}
+
+void settle_geometry(const GivenGrid& given, Geometry& geometry, std::vector<std::string>& notes) {
+    put_in(given, geometry);
+    const auto nearest = straightened(geometry);
+    if (nearest && nearest->direction != geometry.direction) {
+        notes.push_back(
+            "its axes are not quite at right angles: the nearest grid that is so was taken, whose "
+            "samples lie up to " +
+            text_of(distance_between(geometry, *nearest)) + " mm from the file's");
+        geometry = *nearest;
+    }
+    check_geometry(geometry);
+}
+
 void finish(Result& result, const Request& request, std::span<std::byte> samples) {
-    put_in(request.grid, result.geometry);
-    check_geometry(result.geometry);
+    settle_geometry(request.grid, result.geometry, result.notes);
     if (result.type != SampleType::float32) return;
     const std::span<float> floats{reinterpret_cast<float*>(samples.data()),
                                   samples.size() / sizeof(float)};

@@ -105,6 +105,15 @@ void check_spacing(double spacing, const std::string& where);
 void check_coordinate(double coordinate, const std::string& where);
 /// All of a grid: check() and these two. Throws Failure.
 void check_geometry(const Geometry& geometry);
+/// Greatest distance between the places of a corner in two grids of one size [mm].
+double distance_between(const Geometry& a, const Geometry& b);
+/// The nearest grid whose axes are at right angles, or nothing if that is too far: some sample
+/// would move by more than half of the smallest spacing. Rounded directions, and what programs
+/// leave of a gantry tilt, are that near. A grid that check() takes stays as it is.
+std::optional<Geometry> straightened(const Geometry& geometry);
+/// Puts in what is given instead of the file's grid, straightens the grid with a note, and checks
+/// it. Throws Failure.
+void settle_geometry(const GivenGrid& given, Geometry& geometry, std::vector<std::string>& notes);
 
 /// Lets this process allocate so many bytes more than it has (and 64 MiB) until the next bound, so
 /// that a library that asks for much more than a file needs gets std::bad_alloc. What is shared

@@ -123,8 +123,7 @@ VolumeHeader locate_by_header(const Request& request) {
     }
     check_raw_length(header);
     place.offset += place.skip;
-    put_in(request.grid, header.geometry);
-    check_geometry(header.geometry);
+    settle_geometry(request.grid, header.geometry, header.notes);
     header.geometry = orthonormal(header.geometry);
     return header;
 }

@@ -231,23 +231,21 @@ Transform sform_of(const Header& header, double unit) {
     return lps;
 }
 
-/// True where the axes are not at right angles, more than a grid's may be (check(Geometry)).
-bool is_sheared(const Transform& lps) {
-    const Mat3 axes = lps.leftCols<3>().colwise().normalized();
-    return !((axes.transpose() * axes - Mat3::Identity()).cwiseAbs().array() < 1e-4).all();
+/// False if the header does not give the grid's place in the body.
+bool is_placed(const Header& header) {
+    return header.code(qform_code) > 0 || header.code(sform_code) > 0;
 }
 
-/// Greatest distance between the two places of a corner of the grid [mm].
-double distance_between(const Transform& a, const Transform& b, const Header& header) {
-    double most = 0;
-    for (unsigned corner = 0; corner < 8; ++corner) {
-        Eigen::Vector4d at(0, 0, 0, 1);
-        for (int axis = 0; axis < 3; ++axis) {
-            if (corner >> axis & 1) at[axis] = static_cast<double>(size_of_axis(header, axis) - 1);
-        }
-        most = std::max(most, ((a - b) * at).norm());
+Geometry nifti_grid(const Transform& lps, const Header& header) {
+    Geometry g;
+    for (int axis = 0; axis < 3; ++axis) {
+        g.size[axis] = static_cast<int>(size_of_axis(header, axis));
+        g.spacing[axis] = lps.col(axis).norm();
+        g.direction.col(axis) = (lps.col(axis) / g.spacing[axis]).array() + 0.0;  // no -0
     }
-    return most;
+    g.origin = lps.col(3).array() + 0.0;
+    g.oriented = is_placed(header);
+    return g;
 }
 
 /// A tenth of the smallest spacing is what two rounded descriptions of one grid may differ by.
@@ -255,7 +253,9 @@ void note_disagreement(const Transform& taken, const Header& header, double unit
                        std::vector<std::string>& notes) {
     try {
         std::vector<std::string> of_qform;
-        const double distance = distance_between(taken, qform_of(header, unit, of_qform), header);
+        const Transform qform = qform_of(header, unit, of_qform);
+        const double distance =
+            distance_between(nifti_grid(taken, header), nifti_grid(qform, header));
         if (distance <= 0.1 * taken.leftCols<3>().colwise().norm().minCoeff()) return;
         notes.push_back("its sform and qform place it differently (" + text_of(distance) +
                         " mm apart): the sform was taken");
@@ -276,11 +276,6 @@ void note_spacings(const Transform& sform, const Header& header, double unit,
     }
 }
 
-/// False if the header does not give the grid's place in the body.
-bool is_placed(const Header& header) {
-    return header.code(qform_code) > 0 || header.code(sform_code) > 0;
-}
-
 /// Whether its directions are all zero, or a number of it is not finite.
 bool is_empty_sform(const Header& header) {
     bool has_direction = false, is_finite = true;
@@ -291,7 +286,20 @@ bool is_empty_sform(const Header& header) {
     return !has_direction || !is_finite;
 }
 
-/// The sform goes before the qform, unless it is sheared, which a grid cannot be.
+/// Whether its axes are of length 1 where the header gives other spacings and a qform with them:
+/// some programs write directions without spacings.
+bool has_no_spacings(const Transform& sform, const Header& header, double unit) {
+    bool other = false;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double given = std::abs(header.real(pixdim, static_cast<std::size_t>(axis) + 1));
+        if (std::abs(sform.col(axis).norm() - unit) > 1e-4 * unit) return false;
+        other =
+            other || (size_of_axis(header, axis) > 1 && given > 0 && std::abs(given - 1) > 0.01);
+    }
+    return other && header.code(qform_code) > 0;
+}
+
+/// The sform goes before the qform, unless no grid can be as it says.
 Transform transform_of(const Header& header, std::vector<std::string>& notes) {
     const double unit = unit_of_length(header, notes);
     const bool has_qform = header.code(qform_code) > 0;
@@ -310,7 +318,13 @@ Transform transform_of(const Header& header, std::vector<std::string>& notes) {
     }
     if (!has_sform) return qform_of(header, unit, notes);
     const Transform sform = sform_of(header, unit);
-    if (!is_sheared(sform)) {
+    if (has_no_spacings(sform, header, unit)) {
+        notes.emplace_back(
+            "its sform has axes of length 1, but its header gives other spacings: its qform was "
+            "taken");
+        return qform_of(header, unit, notes);
+    }
+    if (straightened(nifti_grid(sform, header))) {
         note_spacings(sform, header, unit, notes);
         if (has_qform) note_disagreement(sform, header, unit, notes);
         return sform;
@@ -326,17 +340,17 @@ Transform transform_of(const Header& header, std::vector<std::string>& notes) {
     return qform_of(header, unit, notes);
 }
 
-Geometry geometry_of(const Header& header, std::vector<std::string>& notes) {
-    const Transform lps = transform_of(header, notes);
-    Geometry g;
-    for (int axis = 0; axis < 3; ++axis) {
-        g.size[axis] = static_cast<int>(size_of_axis(header, axis));
-        g.spacing[axis] = lps.col(axis).norm();
-        g.direction.col(axis) = (lps.col(axis) / g.spacing[axis]).array() + 0.0;  // no -0
+/// SPM writes an origin where Analyze has none, but not which side is left.
+void note_origin(const Header& header, std::vector<std::string>& notes) {
+    constexpr std::size_t originator = 253;
+    bool is_told = false;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto bytes = std::span(header.bytes).subspan(originator + 2 * axis);
+        is_told = is_told || number_in<std::int16_t>(bytes, header.swapped) != 0;
     }
-    g.origin = lps.col(3).array() + 0.0;
-    g.oriented = is_placed(header);
-    return g;
+    if (header.is_analyze && is_told) {
+        notes.emplace_back("its header gives an origin (of SPM), which was ignored");
+    }
 }
 
 /// A slope of 0, NaN or infinity means that the numbers are the values, whatever the intercept.
@@ -434,7 +448,8 @@ VolumeHeader nifti_header(const Request& request) {
                       " samples in more than 4 axes (vectors?); save one volume of it");
     }
     header.places = {place_of(bytes, samples, sample_bytes, header.notes)};
-    header.geometry = geometry_of(bytes, header.notes);
+    header.geometry = nifti_grid(transform_of(bytes, header.notes), bytes);
+    note_origin(bytes, header.notes);
     header.value_map = values_of(bytes, header.notes);
     if (header.sizes.size() == 4) {
         header.steps = header.sizes[3];

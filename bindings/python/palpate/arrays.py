@@ -1,6 +1,7 @@
 """Volumes from arrays of any kind, by what they can do: NumPy, nibabel, zarr, h5py, dask."""
 
 import copy
+import itertools
 import operator
 import warnings
 from typing import TYPE_CHECKING, Any, Optional
@@ -22,8 +23,9 @@ def as_volume(data: Any, spacing: Optional[ArrayLike] = None, origin: Optional[A
               direction: Optional[ArrayLike] = None, frame: Optional[int] = None) -> Volume:
     """A Volume from `data`, without a copy where its samples can be shared.
 
-    data: a Volume; a nibabel image (its affine, RAS, gives spacing, origin and direction, LPS);
-    or anything with a shape that NumPy can read, indexed [z, y, x]: an array, zarr, h5py, dask.
+    data: a Volume; a nibabel image of any format (its affine, RAS, gives spacing, origin and
+    direction, LPS); or anything with a shape that NumPy can read, indexed [z, y, x]: an array,
+    zarr, h5py, dask. Dimensions that are named x, y and z, as xarray's are, may have any order.
     bool becomes uint8, int8 int16 and anything else that Palpate does not keep float32. NaN and
     infinity become the least finite sample, with a warning. An array with masked elements is a
     ValueError: fill them first.
@@ -54,7 +56,19 @@ def _placed(volume, given):
     return volume._placed(place)
 
 
+def _in_order(data):
+    """With the axes z, y and x last, if they have these names."""
+    names = getattr(data, "dims", ())
+    names = [name.lower() if isinstance(name, str) else name for name in names] if isinstance(names, tuple) else []
+    if len(set(names)) != len(names) or not {"z", "y", "x"} <= set(names):
+        return data
+    order = [axis for axis, name in enumerate(names) if name not in ("z", "y", "x")]
+    order += [names.index(name) for name in "zyx"]
+    return data if order == sorted(order) else numpy.asanyarray(data).transpose(order)
+
+
 def _frame_of(data, frame, axis):
+    data = _in_order(data)
     if hasattr(data, "__dlpack__") and not hasattr(data, "__array__"):
         data = numpy.from_dlpack(data)
     if not hasattr(data, "shape") or isinstance(data, memoryview):
@@ -78,38 +92,45 @@ def _frame_of(data, frame, axis):
 
 
 def _from_nibabel(image, frame):
-    """Samples [z, y, x] and their place: nibabel's are [x, y, z], its space is RAS."""
-    samples = numpy.asanyarray(_frame_of(image.dataobj, frame, axis=3))
-    affine, placed = _affine_of(image)
+    """Samples [z, y, x] and their place: nibabel's are [x, y, z], its space is RAS. Frames of MINC come first."""
+    frames_first = getattr(image.header, "data_layout", "F") == "C"
+    samples = numpy.asanyarray(_frame_of(image.dataobj, frame, axis=0 if frames_first else 3))
+    shape = (*samples.shape, 1, 1, 1)[:3]
+    affine, placed = _affine_of(image, shape)
     affine = numpy.diag([-1.0, -1.0, 1.0, 1.0]) @ affine
     spacing = numpy.linalg.norm(affine[:3, :3], axis=0)
     if not numpy.all(spacing > 0):
         raise ValueError("the image's affine has an axis of length 0")
     place = {"spacing": spacing, "origin": affine[:3, 3]}
     if placed:
-        place["direction"] = affine[:3, :3] / spacing
+        place["direction"] = _straightened(affine[:3, :3] / spacing, spacing, shape)
     return samples.T, place
 
 
-def _affine_of(image):
+def _affine_of(image, shape):
     """Index to RAS [mm], chosen as load() chooses it for a NIfTI file (docs/io.md), and whether the image
     says it."""
-    affine, header = numpy.asarray(image.affine, dtype=float), image.header
+    header = image.header
     is_nifti = hasattr(header, "get_qform")
-    if not is_nifti and not hasattr(header, "get_base_affine"):
-        return affine, True
+    is_analyze = not is_nifti and hasattr(header, "keys") and "pixdim" in header.keys()
     if is_nifti:
+        affine = numpy.asarray(image.affine, dtype=float)
         placed = header["sform_code"] > 0 or header["qform_code"] > 0
         placed = placed or image.affine is not None and not numpy.allclose(affine, header.get_base_affine())
-    else:  # Analyze has no orientation; SPM keeps one in a file .mat
+    elif is_analyze:  # it has no orientation; SPM keeps one in a file .mat
+        affine = numpy.asarray(image.affine, dtype=float)
         placed = "mat" in dict(image.files_types) and not numpy.allclose(affine, header.get_best_affine())
+    else:
+        placed = image.affine is not None
+        affine = numpy.asarray(image.affine, dtype=float) if placed else numpy.eye(4)
     if not placed:
-        warnings.warn("the image's header says nothing of its orientation in the body: its axes "
-                      "were taken as those of LPS", stacklevel=4)
-        affine = numpy.diag([-1.0, -1.0, 1.0, 1.0]) @ numpy.diag([*header["pixdim"][1:4], 1.0])
-    elif _is_sheared(affine) and is_nifti and header["qform_code"] > 0:
-        warnings.warn("the image's affine is sheared, which a grid cannot be: its qform was taken",
-                      stacklevel=4)
+        _warn("the image's header says nothing of its orientation in the body: its axes were taken as those of LPS")
+        affine = numpy.diag([-1.0, -1.0, 1.0, 1.0]) @ numpy.diag([*header.get_zooms()[:3], 1.0])
+    elif is_nifti and header["qform_code"] > 0 and _has_no_spacings(affine, header["pixdim"][1:4], shape):
+        _warn("the image's affine has axes of length 1, but its header gives other spacings: its qform was taken")
+        affine = header.get_qform()
+    elif is_nifti and header["qform_code"] > 0 and _is_sheared(affine, shape):
+        _warn("the image's affine is sheared, which a grid cannot be: its qform was taken")
         affine = header.get_qform()
     if not is_nifti:
         return affine, placed
@@ -117,9 +138,43 @@ def _affine_of(image):
     return numpy.diag([unit, unit, unit, 1.0]) @ affine, placed
 
 
-def _is_sheared(affine):
-    axes = affine[:3, :3] / numpy.linalg.norm(affine[:3, :3], axis=0)
-    return numpy.abs(axes.T @ axes - numpy.eye(3)).max() >= 1e-4
+def _warn(what):
+    warnings.warn(what, stacklevel=5)
+
+
+def _has_no_spacings(affine, given, shape):
+    """Whether the axes are of length 1 where a NIfTI header gives other spacings."""
+    lengths = numpy.linalg.norm(affine[:3, :3], axis=0)
+    other = [size > 1 and abs(spacing) > 0 and abs(abs(spacing) - 1) > 0.01 for size, spacing in zip(shape, given)]
+    return numpy.abs(lengths - 1).max() <= 1e-4 and any(other)
+
+
+def _right_angles(direction, spacing, shape):
+    """The nearest direction whose axes are at right angles, and how far that moves the farthest sample [mm]. As
+    load() does it, none if that is more than half of the smallest spacing."""
+    nearest = direction
+    error = numpy.abs(direction.T @ direction - numpy.eye(3)).max()
+    if error >= 1e-4:
+        left, _, right = numpy.linalg.svd(direction)
+        nearest = left @ right
+    corners = numpy.array(list(itertools.product(*((0, size - 1) for size in shape)))).T
+    moved = numpy.linalg.norm((nearest - direction) * spacing @ corners, axis=0).max()
+    return (nearest, moved) if error <= 0.01 and moved <= 0.5 * spacing.min() else (None, moved)
+
+
+def _is_sheared(affine, shape):
+    spacing = numpy.linalg.norm(affine[:3, :3], axis=0)
+    return _right_angles(affine[:3, :3] / spacing, spacing, shape)[0] is None
+
+
+def _straightened(direction, spacing, shape):
+    nearest, moved = _right_angles(direction, spacing, shape)
+    if nearest is None:
+        return direction  # Volume refuses it
+    if moved > 0:
+        _warn("the image's axes are not quite at right angles: the nearest grid that is so was taken, whose samples lie "
+              f"up to {moved:.6g} mm from the image's")
+    return nearest
 
 
 def _finite(samples):

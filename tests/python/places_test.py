@@ -1,0 +1,229 @@
+"""Grids lie where their headers say, also if a program has rounded them, left out their spacings or named their axes.
+The cases are reports to other readers, whose issues are named."""
+
+import itertools
+import struct
+import warnings
+
+import nibabel
+import numpy
+import palpate
+import pytest
+from formats_test import nrrd
+from headers_test import meta_image, nifti
+from nibabel.brikhead import AFNIHeader, AFNIImage
+from nibabel.minc1 import Minc1Image
+from nibabel.spatialimages import SpatialImage
+from readers_test import SHAPE, noted, ramp, refused
+
+LPS = numpy.diag([-1.0, -1.0, 1.0])
+CORNERS = list(itertools.product(*((0, size - 1) for size in SHAPE[::-1])))
+
+
+def turn(degrees):
+    c, s = numpy.cos(numpy.radians(degrees)), numpy.sin(numpy.radians(degrees))
+    return numpy.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) @ numpy.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+
+
+def farthest(volume, axes, origin):
+    """From where a file puts a corner: `axes` has its steps in columns (LPS)."""
+    return max(numpy.linalg.norm(volume.geometry.physical(corner) - (origin + axes @ corner)) for corner in CORNERS)
+
+
+# Axes that are not quite at right angles ---------------------------------------------------------------
+
+
+def sform(path, axes, origin, qform=None, pixdim=None):
+    """axes, origin: LPS. qform: a quaternion's last three numbers."""
+    def change(header):
+        rows = numpy.column_stack([LPS @ axes, LPS @ origin])
+        struct.pack_into("<8f", header, 76, 1, *(numpy.linalg.norm(axes, axis=0) if pixdim is None else pixdim), 0, 0, 0, 0)
+        struct.pack_into("<2h", header, 252, qform is not None, 1)
+        struct.pack_into("<3f", header, 256, *(qform or (0, 0, 0)))
+        struct.pack_into("<3f", header, 268, *(LPS @ origin))
+        struct.pack_into("<12f", header, 280, *rows.ravel())
+    return nifti(path, change)
+
+
+def vectors(axes):
+    return " ".join("(" + ",".join(map(repr, map(float, axis))) + ")" for axis in axes.T)
+
+
+def in_nrrd(path, axes, origin):
+    return nrrd(path.with_suffix(".nrrd"), ramp("i2"), "space: left-posterior-superior", f"space directions: {vectors(axes)}",
+                f"space origin: {vectors(numpy.array(origin, float)[:, None])}")
+
+
+def in_meta_image(path, axes, origin):
+    cosines = " ".join(repr(float(number)) for number in (axes / (1, 2, 3)).T.ravel())
+    return meta_image(path.with_suffix(".mha"), f"TransformMatrix = {cosines}", f"Offset = {' '.join(map(str, origin))}",
+                      data=ramp("i2").tobytes())
+
+
+WRITERS = {"nii": lambda path, axes, origin: sform(path.with_suffix(".nii"), axes, origin), "nrrd": in_nrrd, "mha": in_meta_image}
+
+
+@pytest.mark.parametrize("kind", WRITERS)
+@pytest.mark.parametrize("degrees", (0, 33))
+def test_axes_that_are_nearly_at_right_angles_are_straightened_and_the_distance_is_said(tmp_path, kind, degrees):
+    """InsightSoftwareConsortium/ITK#3994, #2674 and #3333, SimpleITK/SimpleITK#1433, wasserth/TotalSegmentator#461,
+    MIC-DKFZ/nnDetection#24, rordenlab/dcm2niix#945"""
+    for cosine, is_read in ((0.0005, True), (0.009, True), (0.02, False)):
+        shear = numpy.eye(3)
+        shear[0, 1] = cosine
+        axes, origin = turn(degrees) @ shear @ numpy.diag([1, 2, 3]), (10, 20, 30)
+        path = WRITERS[kind](tmp_path / "a", axes, origin)
+        if not is_read:
+            refused(path, "resample")
+            continue
+        loaded = palpate.load(path)
+        moved = farthest(loaded.volume, axes, origin)
+        said = next(float(note.split(" mm from")[0].split()[-1]) for note in loaded.notes if "right angles" in note)
+        assert 0 < moved < 0.06 and said == pytest.approx(moved, rel=1e-3), loaded.notes
+        assert numpy.allclose(loaded.volume.geometry.spacing, numpy.linalg.norm(axes, axis=0))
+        assert numpy.array_equal(palpate.open_store(path).levels[0].size, loaded.volume.geometry.size)
+
+
+def test_directions_with_a_few_digits_are_straightened_and_their_lengths_count(tmp_path):
+    axes = numpy.round(turn(33), 3) @ numpy.diag([1, 2, 3])
+    volume = noted(in_meta_image(tmp_path / "a", axes, (1, 2, 3)), "right angles")
+    assert farthest(volume, axes, (1, 2, 3)) < 0.01
+    assert not numpy.array_equal(volume.geometry.spacing, (1, 2, 3))
+    refused(in_meta_image(tmp_path / "b", 1.02 * axes, (1, 2, 3)), "orthonormal")
+
+
+def test_a_long_grid_is_not_straightened_if_its_end_would_move_by_a_sample(tmp_path):
+    data = numpy.arange(4000, dtype="i2").reshape(1, 1, 4000)
+    for cosine, is_read in ((0.0002, True), (0.001, False)):
+        path = nrrd(tmp_path / "a.nrrd", data, "space: left-posterior-superior",
+                    f"space directions: (1,0,0) ({cosine},1,0) (0,0,1)", "space origin: (0,0,0)")
+        if is_read:
+            assert numpy.array_equal(noted(path, "right angles").array, data)
+        else:
+            refused(path, "orthonormal")
+
+
+def test_a_nearly_straight_sform_goes_before_the_qform(tmp_path):
+    shear = numpy.diag([1.0, 2, 3])
+    shear[0, 1] = 0.002
+    volume = noted(sform(tmp_path / "a.nii", shear, (10, 20, 30), qform=(0, 0, 0)), "the sform was taken")
+    assert farthest(volume, shear, (10, 20, 30)) < 0.01
+
+
+@pytest.mark.parametrize("cosine", (0, 0.0005, 0.009, 0.02))
+def test_a_nibabel_image_is_straightened_as_its_file(tmp_path, cosine):
+    shear = turn(20) @ numpy.diag([1.0, 2, 3])
+    shear[:, 1] += 2 * cosine * turn(20)[:, 0]
+    path = sform(tmp_path / "a.nii", shear, (10, 20, 30))
+    image = nibabel.load(path)
+    if cosine > 0.01:
+        refused(path, "sheared")
+        with pytest.raises(ValueError, match="orthonormal"):
+            palpate.as_volume(image)
+        return
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        ours = palpate.as_volume(image).geometry
+    assert any("right angles" in str(one.message) for one in caught) == (cosine > 0)
+    theirs = palpate.load(path).volume.geometry
+    for name in ("size", "spacing", "origin", "direction"):
+        assert numpy.allclose(getattr(ours, name), getattr(theirs, name), atol=1e-6), name
+
+
+# Transforms without spacings ----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("qform", (True, False))
+def test_an_sform_of_directions_without_spacings_gives_way_to_the_qform(tmp_path, qform):
+    """InsightSoftwareConsortium/ITK#3514 and Deep-MI/FastSurfer#36: VINCI writes directions where steps belong."""
+    path = sform(tmp_path / "a.nii", LPS @ numpy.eye(3), (10, 20, 30), qform=(0, 0, 0) if qform else None, pixdim=(0.5, 0.5, 0.75))
+    note = "axes of length 1" if qform else "two spacings"
+    volume = noted(path, note)
+    spacing = (0.5, 0.5, 0.75) if qform else (1, 1, 1)
+    assert farthest(volume, LPS @ numpy.diag(spacing), (10, 20, 30)) < 1e-6
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        ours = palpate.as_volume(nibabel.load(path))
+    assert any(note in str(one.message) for one in caught) == qform
+    assert numpy.allclose(ours.geometry.spacing, spacing) and numpy.allclose(ours.geometry.origin, (10, 20, 30))
+
+
+def test_the_origin_of_an_analyze_header_of_spm_is_noted(tmp_path):
+    nibabel.Spm99AnalyzeImage(ramp("i2").T, numpy.diag([-2, -3, 4, 1])).to_filename(tmp_path / "a.img")
+    (tmp_path / "a.mat").unlink()
+    header = bytearray((tmp_path / "a.hdr").read_bytes())
+    struct.pack_into("<3h", header, 253, 3, 2, 3)
+    (tmp_path / "a.hdr").write_bytes(header)
+    assert numpy.array_equal(noted(tmp_path / "a.hdr", "an origin (of SPM)").geometry.origin, (0, 0, 0))
+
+
+# Images of nibabel and arrays with names ------------------------------------------------------------------
+
+
+AFFINE = numpy.array([[0, 2.0, 0, 5], [-1, 0, 0, 6], [0, 0, 3, 7], [0, 0, 0, 1]])
+
+
+def afni(data, affine):
+    header = {"DATASET_DIMENSIONS": [*data.shape[:3], 0, 0], "DATASET_RANK": [3, 1], "BRICK_TYPES": [1], "DELTA": [1, 2, 3],
+              "ORIGIN": [0, 0, 0], "IJK_TO_DICOM_REAL": [1] * 12, "ORIENT_SPECIFIC": [0, 3, 4], "TYPESTRING": "3DIM_HEAD_ANAT",
+              "BYTEORDER_STRING": "LSB_FIRST", "BRICK_FLOAT_FACS": None}
+    return AFNIImage(data, affine, AFNIHeader(header))
+
+
+@pytest.mark.parametrize("kind", (SpatialImage, nibabel.MGHImage, Minc1Image, afni, nibabel.Nifti1Image, nibabel.Nifti2Image))
+def test_a_nibabel_image_of_any_format_lies_where_its_affine_says(kind):
+    data = ramp("i2").T.astype("i4" if kind is nibabel.MGHImage else "i2")
+    volume = palpate.as_volume(kind(data, AFFINE))
+    assert numpy.array_equal(volume.array, data.T) and volume.geometry.oriented
+    assert farthest(volume, LPS @ AFFINE[:3, :3], LPS @ AFFINE[:3, 3]) < 1e-6
+
+
+@pytest.mark.parametrize("kind", (SpatialImage, Minc1Image))
+def test_a_nibabel_image_without_an_affine_has_no_orientation(kind):
+    with pytest.warns(UserWarning, match="nothing of its orientation"):
+        volume = palpate.as_volume(kind(ramp("i2").T, None))
+    assert not volume.geometry.oriented and numpy.array_equal(volume.array, ramp("i2"))
+
+
+def test_an_mgh_file_read_by_nibabel_and_by_palpate_is_the_same(tmp_path):
+    nibabel.MGHImage(ramp("i4").T, AFFINE).to_filename(tmp_path / "a.mgz")
+    ours, theirs = palpate.load(tmp_path / "a.mgz").volume, palpate.as_volume(nibabel.load(tmp_path / "a.mgz"))
+    assert numpy.array_equal(ours.array, theirs.array)
+    assert all(numpy.allclose(ours.geometry.physical(corner), theirs.geometry.physical(corner), atol=1e-5) for corner in CORNERS)
+
+
+def test_frames_of_minc_come_first():
+    data = numpy.stack([ramp("i2").T, ramp("i2").T + 1])  # t, and the axes of the affine
+    for frame in (0, 1):
+        volume = palpate.as_volume(Minc1Image(data, AFFINE), frame=frame)
+        assert numpy.array_equal(volume.array, data[frame].T)
+
+
+class Named:
+    """Has names of its dimensions, as xarray's arrays do."""
+
+    def __init__(self, values, dims):
+        self.values, self.dims = values, dims
+
+    shape = property(lambda self: self.values.shape)
+
+    def __array__(self, dtype=None, copy=None):
+        return self.values if dtype is None else self.values.astype(dtype)
+
+    def __getitem__(self, where):
+        return self.values[where]
+
+
+@pytest.mark.parametrize("names", [*map("".join, itertools.permutations("xyz")), "XYZ"])
+def test_dimensions_with_names_may_have_any_order(names):
+    """InsightSoftwareConsortium/ITK#1632, imagej/pyimagej#151"""
+    array = ramp("u2").transpose(["zyx".index(name) for name in names.lower()])
+    assert numpy.array_equal(palpate.as_volume(Named(array, tuple(names))).array, ramp("u2"))
+    timed = numpy.stack([array, array + 1], axis=1)
+    volume = palpate.as_volume(Named(timed, (names[0], "t", *names[1:])), frame=1)
+    assert numpy.array_equal(volume.array, ramp("u2") + 1)
+
+
+@pytest.mark.parametrize("names", (("a", "b", "c"), ("dim_0", "dim_1", "dim_2"), ("z", "z", "x"), "zyx", None, (0, 1, 2)))
+def test_other_names_of_dimensions_change_nothing(names):
+    assert numpy.array_equal(palpate.as_volume(Named(ramp("u2"), names)).array, ramp("u2"))
