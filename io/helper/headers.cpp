@@ -22,26 +22,44 @@ struct FilePattern {
     std::string before, after;
     std::size_t width = 0;
     char fill = ' ';
-    int first = 0, last = 0, step = 0;
+    std::int64_t first = 0, last = 0, step = 0;
 };
 
-std::optional<FilePattern> pattern_in(const std::string& name) {
-    std::istringstream words(name);
-    FilePattern pattern;
-    std::string file;
-    if (!(words >> file >> pattern.first >> pattern.last >> pattern.step)) return std::nullopt;
+/// Takes the last word off a text, if it is a whole number.
+std::optional<std::int64_t> last_number(std::string& text) {
+    const std::size_t blank = text.find_last_of(" \t");
+    if (blank == text.npos) return std::nullopt;
+    const auto number = number_from<std::int64_t>(text.substr(blank + 1));
+    if (number) text = trimmed(text.substr(0, blank));
+    return number;
+}
+
+/// Its numbers are the first one, the last one and the step. A fourth one (dimensions of a file)
+/// says nothing that the sizes do not. MetaImage may leave out the last two or all of them: then
+/// there is a file for each of `steps`.
+std::optional<FilePattern> pattern_in(const std::string& name, std::int64_t steps) {
+    std::string file = trimmed(name);
+    std::vector<std::int64_t> numbers;
+    while (numbers.size() < 4) {
+        const auto number = last_number(file);
+        if (!number) break;
+        numbers.insert(numbers.begin(), *number);
+    }
     const std::size_t at = file.find('%');
     const std::size_t letter = at == file.npos ? at : file.find_first_not_of("0123456789", at + 1);
     if (letter == file.npos || file[letter] != 'd') return std::nullopt;
+    if (numbers.size() < 2 && steps > 0) {
+        const std::int64_t first = numbers.empty() ? 1 : numbers[0];
+        numbers = {first, first + steps - 1, 1};
+    }
+    if (numbers.size() < 3) return std::nullopt;
     const std::string width = file.substr(at + 1, letter - at - 1);
-    pattern.before = file.substr(0, at);
-    pattern.after = file.substr(letter + 1);
+    FilePattern pattern{file.substr(0, at), file.substr(letter + 1), 0, ' ', numbers[0], numbers[1],
+                        numbers[2]};
     pattern.width = number_from<unsigned char>(width).value_or(0);
     if (width.starts_with('0')) pattern.fill = '0';
-    const std::int64_t most = std::int64_t{1} << 30;
-    if (pattern.step == 0 ||
-        std::max({std::abs(std::int64_t{pattern.first}), std::abs(std::int64_t{pattern.last}),
-                  std::abs(std::int64_t{pattern.step})}) > most) {
+    for (const std::int64_t number : numbers) {
+        if (pattern.step != 0 && std::abs(number) <= std::int64_t{1} << 30) continue;
         throw Failure("its numbers of data files make no sense; correct the header");
     }
     return pattern;
@@ -196,7 +214,9 @@ bool is_list(const std::string& name) {
 
 std::vector<std::filesystem::path> data_files(const std::string& name, const HeaderFields& fields,
                                               const std::filesystem::path& header,
-                                              std::vector<std::string>& notes) {
+                                              std::vector<std::string>& notes, std::int64_t steps) {
+    std::error_code error;
+    if (std::filesystem::is_regular_file(header.parent_path() / name, error)) steps = 0;
     std::vector<std::filesystem::path> files;
     const auto add = [&](const std::string& file) {
         files.push_back(data_file(file, header, notes));
@@ -214,7 +234,7 @@ std::vector<std::filesystem::path> data_files(const std::string& name, const Hea
             const std::string file = trimmed(line.c_str());
             if (!file.empty()) add(file);
         }
-    } else if (const auto pattern = pattern_in(name)) {
+    } else if (const auto pattern = pattern_in(name, steps)) {
         const auto [before, after, width, fill, first, last, step] = *pattern;
         for (std::int64_t i = first; step > 0 ? i <= last : i >= last; i += step) {
             const std::string digits = std::to_string(i);

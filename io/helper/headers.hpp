@@ -116,10 +116,12 @@ std::int64_t whole_number_in(const std::string& text, const std::string& field, 
 bool is_list(const std::string& name);
 /// The data files that a header names: one, those of a pattern such as "a%03d.raw 1 9 2", or after
 /// "LIST" those of the lines in the header from `fields.data_offset` on. One that is not there is
-/// looked for beside the header, with a note.
+/// looked for beside the header, with a note. `steps`: if above 0, a pattern without its numbers,
+/// or with the first alone, means so many files, unless a file has that name.
 std::vector<std::filesystem::path> data_files(const std::string& name, const HeaderFields& fields,
                                               const std::filesystem::path& header,
-                                              std::vector<std::string>& notes);
+                                              std::vector<std::string>& notes,
+                                              std::int64_t steps = 0);
 /// A place like this one in each file.
 std::vector<DataPlace> places_in(const std::vector<std::filesystem::path>& files,
                                  const DataPlace& like);

@@ -57,8 +57,9 @@ Stored stored_from(const std::string& type) {
     return found->second;
 }
 
+/// `slices`: the size of the last axis, which several files share.
 std::vector<DataPlace> places_of(const HeaderFields& fields, const std::filesystem::path& path,
-                                 std::vector<std::string>& notes) {
+                                 std::int64_t slices, std::vector<std::string>& notes) {
     DataPlace place;
     const std::string name = fields.needed("elementdatafile");
     const bool is_local = lower(name) == "local";
@@ -90,7 +91,8 @@ std::vector<DataPlace> places_of(const HeaderFields& fields, const std::filesyst
     }
     const bool is_big = is_true(element) || is_true(data);
     place.swapped = is_big != (std::endian::native == std::endian::big);
-    return places_in(is_local ? std::vector{path} : data_files(name, fields, path, notes), place);
+    return places_in(is_local ? std::vector{path} : data_files(name, fields, path, notes, slices),
+                     place);
 }
 
 /// The first of these fields that is there, with `count` numbers; empty if none is. A note says it
@@ -177,7 +179,7 @@ VolumeHeader meta_image_header(const Request& request) {
         throw Failure("it has " + channels +
                       " values a sample (colours or vectors); give a volume with one");
     }
-    header.places = places_of(fields, request.path, header.notes);
+    header.places = places_of(fields, request.path, header.sizes.back(), header.notes);
     checked_bytes(header.sizes, size_of(header.stored), file_bytes(header), request);
     const bool at_end = fields.has("headersize") &&
                         whole_number_in(fields.value("headersize"), "HeaderSize", -1) == -1;

@@ -136,6 +136,11 @@ Space named_space(const HeaderFields& fields) {
                       "', which is not known; correct the header");
     }
     Space space;
+    if (fields.has("space directions") && !fields.has("space dimension")) {
+        throw Failure(
+            "its header has space directions, but no space that they are in; add 'space: "
+            "left-posterior-superior' if they are the patient's, or 'space dimension: 3'");
+    }
     if (fields.has("space dimension")) {
         space.dimension = static_cast<std::size_t>(
             whole_number_in(fields.value("space dimension"), "space dimension", 1));
@@ -266,11 +271,21 @@ std::vector<Axis> spatial_axes(const std::vector<Axis>& axes, VolumeHeader& head
     return spatial;
 }
 
+/// How many axes lie in space: up to three, without a time axis behind them.
+std::size_t places_among(const std::vector<Axis>& spatial) {
+    const Axis& last = spatial.back();
+    const bool is_time =
+        last.kind == "time" && (!last.direction || last.direction->place.isZero(0));
+    return std::min<std::size_t>(3, spatial.size() - (is_time && spatial.size() > 1 ? 1 : 0));
+}
+
 /// A space has at least as many dimensions as there are axes (a slice lies in space), or lacks
 /// time.
 void check_dimensions(const Space& space, const std::vector<Axis>& spatial) {
     if (spatial.empty()) throw Failure("it has no axis of space; give a volume");
-    const bool timeless = space.dimension == 3 && spatial.size() == 4 && !spatial[3].direction;
+    const std::size_t places = places_among(spatial);
+    const bool timeless =
+        space.dimension >= places && spatial.size() == places + 1 && !spatial.back().direction;
     if (space.dimension != 0 && space.dimension < spatial.size() && !timeless) {
         throw Failure("its header gives a space of " + std::to_string(space.dimension) +
                       " dimensions for " + std::to_string(spatial.size()) +
@@ -278,7 +293,8 @@ void check_dimensions(const Space& space, const std::vector<Axis>& spatial) {
     }
     for (std::size_t a = 0; a < spatial.size(); ++a) {
         const auto& direction = spatial[a].direction;
-        if (!direction || (a < 3 ? direction->length_beyond() : direction->place.norm()) == 0) {
+        const bool is_place = a < places;
+        if (!direction || (is_place ? direction->length_beyond() : direction->place.norm()) == 0) {
             continue;
         }
         throw Failure(
@@ -287,10 +303,11 @@ void check_dimensions(const Space& space, const std::vector<Axis>& spatial) {
     }
 }
 
-/// Axes beyond the third count volumes.
+/// Axes beyond the third count volumes, and so does a time axis behind fewer ones.
 void take_steps(const Space& space, const SpaceVector& origin, std::vector<Axis>& spatial,
                 VolumeHeader& header) {
-    if (spatial.size() <= 3) {
+    const std::size_t places = places_among(spatial);
+    if (spatial.size() == places) {
         if (header.steps == 1) header.together = static_cast<std::int64_t>(header.samples());
         return;
     }
@@ -298,17 +315,17 @@ void take_steps(const Space& space, const SpaceVector& origin, std::vector<Axis>
         throw Failure("it has more than 4 axes (" + text_of(header.sizes) +
                       "); save one volume of it");
     }
-    for (std::size_t a = 3; a < spatial.size(); ++a) header.steps *= spatial[a].size;
+    for (std::size_t a = places; a < spatial.size(); ++a) header.steps *= spatial[a].size;
     header.together = static_cast<std::int64_t>(header.samples()) / header.steps;
-    if (spatial.size() == 4) {
-        const Axis& time = spatial[3];
+    if (spatial.size() == places + 1) {
+        const Axis& time = spatial[places];
         const bool in_space = time.direction && !origin.beyond.empty();
         header.times =
             frame_times(in_space ? time.direction->beyond[0] : time.spacing.value_or(0),
                         in_space ? origin.beyond[0] : time.minimum.value_or(0),
                         time.unit.empty() ? space.time_unit : lower(time.unit), header.notes);
     }
-    spatial.resize(3);
+    spatial.resize(places);
 }
 
 /// Completes what spacing, minimum and maximum of an axis say of each other, in mm.

@@ -227,3 +227,39 @@ def test_dimensions_with_names_may_have_any_order(names):
 @pytest.mark.parametrize("names", (("a", "b", "c"), ("dim_0", "dim_1", "dim_2"), ("z", "z", "x"), "zyx", None, (0, 1, 2)))
 def test_other_names_of_dimensions_change_nothing(names):
     assert numpy.array_equal(palpate.as_volume(Named(ramp("u2"), names)).array, ramp("u2"))
+
+
+# Files of slices, and axes of time -------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name, first, step", (("p%03d.raw", 1, 1), ("p%03d.raw 7", 7, 1), ("p%03d.raw 2 10 2", 2, 2),
+                                               ("a scan %d of mine.raw 0 4 1", 0, 1), ("a scan %2d.raw 3", 3, 1)))
+def test_numbered_files_of_meta_image_need_no_numbers_and_may_have_blanks(tmp_path, name, first, step):
+    """MetaIO counts from 1 as many files as the last axis is long. InsightSoftwareConsortium/ITK, metaImage.cxx"""
+    for number, plane in enumerate(ramp("<i2")):
+        words = name.split(".raw")[0] + ".raw"
+        (tmp_path / (words % (first + step * number))).write_bytes(plane.tobytes())
+    volume = palpate.load(meta_image(tmp_path / "a.mhd", file=name)).volume
+    assert numpy.array_equal(volume.array, ramp("i2"))
+    (tmp_path / (words % (first + step * 4))).unlink()
+    refused(tmp_path / "a.mhd", "cannot be read")
+
+
+def test_a_file_of_a_name_like_a_pattern_goes_before_numbered_ones(tmp_path):
+    (tmp_path / "p%d.raw").write_bytes(ramp("<i2").tobytes())
+    assert numpy.array_equal(palpate.load(meta_image(tmp_path / "a.mhd", file="p%d.raw")).volume.array, ramp("i2"))
+
+
+@pytest.mark.parametrize("fields", (("kinds: domain domain time", "spacings: 2 3 0.5"),
+                                    ("kinds: space space time", "space: left-posterior-superior", "space directions: (2,0,0) (0,3,0) none"),
+                                    ("kinds: space space time", "space dimension: 2", "space directions: (2,0) (0,3) none")))
+def test_slices_that_follow_one_another_in_time_are_frames(tmp_path, fields):
+    path = nrrd(tmp_path / "a.nrrd", ramp("i2"), *fields)
+    for frame, plane in enumerate(ramp("i2")):
+        volume = palpate.load(path, frame=frame).volume
+        assert numpy.array_equal(volume.array, plane[None]) and numpy.array_equal(volume.geometry.spacing[:2], (2, 3))
+    refused(nrrd(path, ramp("i2"), "kinds: time domain domain"), "put it last")
+
+
+def test_directions_of_nrrd_without_a_space_are_refused_with_what_to_do(tmp_path):
+    refused(nrrd(tmp_path / "a.nrrd", ramp("i2"), "space directions: (1,0,0) (0,1,0) (0,0,1)"), "space dimension: 3")
