@@ -1,18 +1,23 @@
 // Reads the triangles of meshes: VTP by VTK, other formats by parsers of our own.
 #include <vtkCellArray.h>
+#include <vtkIdList.h>
 #include <vtkMergePoints.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
+#include <vtkPolygon.h>
 #include <vtkTriangleFilter.h>
 #include <vtkXMLPolyDataReader.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <iterator>
 #include <limits>
 #include <new>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -25,6 +30,8 @@
 #include "io/helper/text_lines.hpp"
 #include "io/helper/vtk_errors.hpp"
 #include "io/system/number.hpp"
+#include "io/units.hpp"
+#include "io/words.hpp"
 
 namespace palpate::io {
 namespace {
@@ -64,7 +71,10 @@ struct Polygons {
     vtkNew<vtkCellArray> faces;
 
     Polygons() { points->SetDataTypeToDouble(); }
-    void add_face(const std::vector<vtkIdType>& corners) const {
+    /// Without corners that are the one before, for which VTK drops a face.
+    void add_face(std::vector<vtkIdType> corners) const {
+        corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+        while (corners.size() > 1 && corners.back() == corners.front()) corners.pop_back();
         faces->InsertNextCell(static_cast<vtkIdType>(corners.size()), corners.data());
     }
     vtkSmartPointer<vtkPolyData> data() const {
@@ -75,15 +85,41 @@ struct Polygons {
     }
 };
 
+/// Whether a line of OBJ goes on in the next one, by a backslash at its end, which is taken off.
+bool goes_on(std::string& line) {
+    const std::size_t end = line.find_last_not_of(" \t");
+    if (end == std::string::npos || line[end] != '\\') return false;
+    line.resize(end);
+    line += ' ';
+    return true;
+}
+
+/// The length [mm] of the unit that a comment names, as SketchUp and Onshape write it ("File units
+/// = meters"), or Mimics ("where 1 unit = 1000.0 mm"). Nothing of other comments.
+std::optional<double> unit_of(const std::string& comment) {
+    const std::string text = lower(comment);
+    const auto after = [&](const std::string& words) {
+        const std::size_t at = text.find(words);
+        return at == text.npos ? "" : trimmed(text.substr(at + words.size()));
+    };
+    if (const std::string unit = after("file units ="); !unit.empty()) return millimetres_in(unit);
+    std::istringstream words(after("where 1 unit ="));
+    std::string number, unit;
+    words >> number >> unit;
+    const auto times = number_from<double>(number);
+    const auto length = millimetres_in(unit);
+    if (!times || !length || !(*times > 0)) return std::nullopt;
+    return *times * *length;
+}
+
 /// Vertices and faces. Not by VTK, whose reader loses faces that count their vertices backwards.
 vtkSmartPointer<vtkPolyData> read_obj(const std::filesystem::path& path) {
     std::istringstream in(plain_text(bytes_of(path)));
     const Polygons mesh;
-    for (std::string line; next_line(in, line);) {
-        for (std::string more; line.ends_with('\\') && next_line(in, more);) {
-            line.back() = ' ';
-            line += more;
-        }
+    double unit = 1;
+    for (std::string line, comment; next_line(in, line, &comment);) {
+        unit = unit_of(comment).value_or(unit);
+        for (std::string more; goes_on(line) && next_line(in, more);) line += more;
         std::istringstream words(line);
         std::string word;
         words >> word;
@@ -96,7 +132,7 @@ vtkSmartPointer<vtkPolyData> read_obj(const std::filesystem::path& path) {
                     throw Failure("'" + line.substr(0, 60) +
                                   "' is no vertex of three numbers; export it again");
                 }
-                coordinate = *number;
+                coordinate = unit * *number;
             }
             mesh.points->InsertNextPoint(at);
         } else if (word == "f") {
@@ -165,12 +201,53 @@ void check_faces(vtkCellArray& faces, vtkIdType vertices) {
     }
 }
 
+/// Twice the area of a polygon as a vector, which is that of its triangles together.
+Vec3 area_of(vtkPoints& points, vtkIdType count, const vtkIdType* ids) {
+    Vec3 area = Vec3::Zero(), first, before, corner;
+    for (vtkIdType i = 0; i < count; ++i) {
+        points.GetPoint(ids[i], corner.data());
+        if (i == 0) first = corner;
+        if (i > 1) area += (before - first).cross(corner - first);
+        before = corner;
+    }
+    return area;
+}
+
+/// VTK drops a polygon that it cannot divide, for example one that touches itself around a hole.
+void check_divided(vtkPolyData& mesh) {
+    const vtkNew<vtkPolygon> polygon;
+    const vtkNew<vtkIdList> triangles;
+    vtkPoints* const points = mesh.GetPoints();
+    vtkIdType count = 0;
+    const vtkIdType* ids = nullptr;
+    for (mesh.GetPolys()->InitTraversal(); mesh.GetPolys()->GetNextCell(count, ids) != 0;) {
+        if (count < 4) continue;
+        polygon->Initialize(static_cast<int>(count), ids, points);
+        polygon->Triangulate(triangles);
+        Vec3 left = area_of(*points, count, ids);
+        double most = left.norm();
+        for (vtkIdType t = 0; t + 2 < triangles->GetNumberOfIds(); t += 3) {
+            const std::array<vtkIdType, 3> corners{ids[triangles->GetId(t)],
+                                                   ids[triangles->GetId(t + 1)],
+                                                   ids[triangles->GetId(t + 2)]};
+            const Vec3 area = area_of(*points, 3, corners.data());
+            left -= area;
+            most = std::max(most, area.norm());
+        }
+        if (left.norm() <= 1e-6 * most) continue;
+        throw Failure("a face of " + std::to_string(count) +
+                      " corners cannot be divided into triangles (it touches or crosses itself); "
+                      "export it again as triangles");
+    }
+}
+
 }  // namespace
 
 MeshSize read_mesh(const std::filesystem::path& path, const std::string& extension) {
     const vtkSmartPointer<vtkPolyData> read = read_poly_data(path, extension);
     check_faces(*read->GetPolys(), read->GetNumberOfPoints());
     check_faces(*read->GetStrips(), read->GetNumberOfPoints());
+    check_divided(*read);
     const vtkNew<vtkTriangleFilter> filter;
     filter->SetInputData(read);
     filter->PassVertsOff();

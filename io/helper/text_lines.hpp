@@ -20,10 +20,12 @@ inline std::string plain_text(const std::string& bytes) {
     return text;
 }
 
-/// The next line without its comment. False at the end.
-inline bool next_line(std::istream& in, std::string& line) {
+/// The next line without its comment, which goes into `comment`. False at the end.
+inline bool next_line(std::istream& in, std::string& line, std::string* comment = nullptr) {
     if (!std::getline(in, line)) return false;
-    line.resize(std::min(line.find('#'), line.size()));
+    const std::size_t end = std::min(line.find('#'), line.size());
+    if (comment) *comment = line.substr(end);
+    line.resize(end);
     return true;
 }
 

@@ -263,3 +263,50 @@ def test_slices_that_follow_one_another_in_time_are_frames(tmp_path, fields):
 
 def test_directions_of_nrrd_without_a_space_are_refused_with_what_to_do(tmp_path):
     refused(nrrd(tmp_path / "a.nrrd", ramp("i2"), "space directions: (1,0,0) (0,1,0) (0,0,1)"), "space dimension: 3")
+
+
+# Meshes -----------------------------------------------------------------------------------------------------
+
+
+def obj(path, text):
+    path.write_bytes(text.encode())
+    mesh = palpate.read_mesh(path)
+    return numpy.asarray(mesh.vertices), numpy.asarray(mesh.triangles)
+
+
+def area(vertices, triangles):
+    a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
+    return numpy.linalg.norm(numpy.cross(b - a, c - a), axis=1).sum() / 2
+
+
+@pytest.mark.parametrize("comment, unit", (("# File units = meters", 1000), ("# Units\n# File units = inches", 25.4), ("# File units = mm", 1),
+                                           ("# vertex coordinates are measured in units, where 1 unit = 1000.000000 mm", 1000),
+                                           ("# where 1 unit = 2 cm", 20), ("# File units = cubits", 1), ("# 1 unit = 7 mm", 1),
+                                           ("# where 1 unit = -1 mm", 1), ("# meters", 1)))
+def test_a_comment_of_obj_may_give_its_unit(tmp_path, comment, unit):
+    """Slicer/Slicer#9360 (Mimics), vkoskiv/c-ray#112 (Onshape)"""
+    vertices, _ = obj(tmp_path / "a.obj", f"{comment}\nv 0 0 0\nv 1 0 0\nv 0 2 0\nf 1 2 3\n")
+    assert numpy.allclose(vertices, unit * numpy.array([(0, 0, 0), (1, 0, 0), (0, 2, 0)]))
+
+
+@pytest.mark.parametrize("end", ("\\\n", "\\ \n", "\\\t \r\n", " \\\r\n"))
+def test_a_line_of_obj_goes_on_behind_a_backslash(tmp_path, end):
+    """mikedh/trimesh#1103"""
+    _, triangles = obj(tmp_path / "a.obj", f"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 {end} 3\n")
+    assert triangles.tolist() == [[0, 1, 2]]
+
+
+OUTLINE = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 1 1 0\nv 1 3 0\nv 3 3 0\nv 3 1 0\n"
+
+
+def test_a_face_that_cannot_be_divided_is_refused_and_not_left_out(tmp_path):
+    """A frame around a hole. tinyobjloader/tinyobjloader#295, mikedh/trimesh#2519"""
+    with pytest.raises(palpate.InputError, match="face of 10 corners cannot be divided"):
+        obj(tmp_path / "a.obj", OUTLINE + "f 1 2 3 4 1 5 6 7 8 5\nf 1 2 3\n")
+
+
+@pytest.mark.parametrize("face, whole", (("1 2 3 4", 16), ("1 2 3 4 1", 16), ("1 2 7 4", 12), ("4 1 2 7", 12), ("1 1 2 3", 8), ("1 2 2 1", None)))
+def test_faces_with_many_corners_keep_their_area(tmp_path, face, whole):
+    """f3d-app/f3d#473"""
+    vertices, triangles = obj(tmp_path / "a.obj", OUTLINE + f"f {face}\nf 6 7 8\n")
+    assert area(vertices, triangles) - 2 == pytest.approx(whole or 0)
