@@ -67,6 +67,11 @@ void check_readable(const fs::path& path) {
     if (!folder && begins_with(path, "version https://git-lfs.github.com/spec/")) {
         throw InputError(name + ": has only the address of its data (Git LFS); run git lfs pull");
     }
+    if (!folder && begins_with(path, "/annex/objects/")) {
+        throw InputError(name +
+                         ": has only the address of its data (git-annex, DataLad); run git annex "
+                         "get or datalad get");
+    }
 }
 
 void fail_without_answer(const fs::path& path) {

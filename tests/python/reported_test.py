@@ -426,7 +426,9 @@ def test_vtk_files_that_are_damaged_or_of_another_kind_are_refused(tmp_path, tex
 @pytest.mark.parametrize("data, words", (
     (gzip.compress(gzip.compress(bytes(1000))), "packed twice"), (bz2.compress(bytes(1000)), "bzip2; unpack it"),
     (b"PK\3\4" + bytes(1000), "zip; unpack it"), (b"\x28\xb5\x2f\xfd" + bytes(1000), "zstd; unpack it"),
-    (b"<!DOCTYPE html><html><head>" + bytes(1000), "web page"), (b"<HTML><BODY>" + bytes(1000), "web page")), ids=range(6))
+    (b"<!DOCTYPE html><html><head>" + bytes(1000), "web page"), (b"<HTML><BODY>" + bytes(1000), "web page"),
+    (b"version https://git-lfs.github.com/spec/v1\noid sha256:0\n", "git lfs pull"), (b"/annex/objects/MD5E-s9--0.nii.gz\n", "datalad get")),
+    ids=range(8))
 @pytest.mark.parametrize("name", ("a.nii.gz", "a.nrrd", "a.mha", "a.mrc"))
 def test_a_file_that_is_something_else_than_its_name_says_is_refused_with_what_to_do(tmp_path, name, data, words):
     (tmp_path / name).write_bytes(data)
