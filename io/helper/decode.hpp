@@ -108,8 +108,8 @@ void check_geometry(const Geometry& geometry);
 /// Greatest distance between the places of a corner in two grids of one size [mm].
 double distance_between(const Geometry& a, const Geometry& b);
 /// The nearest grid whose axes are at right angles, or nothing if that is too far: some sample
-/// would move by more than half of the smallest spacing. Rounded directions, and what programs
-/// leave of a gantry tilt, are that near. A grid that check() takes stays as it is.
+/// would move by more than half of the smallest spacing. Rounded directions and the remains of a
+/// gantry tilt are that near. A grid that check() takes stays as it is.
 std::optional<Geometry> straightened(const Geometry& geometry);
 /// Puts in what is given instead of the file's grid, straightens the grid with a note, and checks
 /// it. Throws Failure.

@@ -3,8 +3,11 @@
 // text or big-endian. VTK's own reader takes files that are cut off without a word.
 #include <algorithm>
 #include <bit>
+#include <fstream>
+#include <iomanip>
 #include <limits>
 #include <map>
+#include <optional>
 #include <sstream>
 
 #include "io/helper/headers.hpp"
@@ -12,29 +15,36 @@
 namespace palpate::io {
 namespace {
 
-constexpr std::size_t longest_vtk_header = 1 << 20;  // with fields before the samples
+constexpr std::size_t longest_vtk_header = 1 << 20;  // of fields before the samples
+constexpr int longest_vtk_word = 1 << 16;
 
-/// The words of a header, in lower case: VTK does not look at their case.
+/// The words of a file, in lower case: VTK does not look at their case.
 class VtkWords {
   public:
-    explicit VtkWords(const std::filesystem::path& file) {
-        const auto start = start_of(file, longest_vtk_header);
-        in_.str(std::string(reinterpret_cast<const char*>(start.data()), start.size()));
+    explicit VtkWords(const std::filesystem::path& file) : in_(file, std::ios::binary) {}
+
+    /// False at the end.
+    bool next(std::string& word) {
+        word.clear();
+        in_ >> std::setw(longest_vtk_word) >> word;
+        word = lower(word);
+        return !word.empty();
     }
     std::string word() {
         std::string word;
-        if (!(in_ >> word)) throw Failure("it ends within its header; copy or download it again");
-        return lower(word);
+        if (!next(word)) throw Failure("it ends within its header; copy or download it again");
+        return word;
     }
     /// What is left of the line.
     std::string rest() {
         std::string line;
-        std::getline(in_, line);
+        for (char c = 0; line.size() < longest_vtk_word && in_.get(c) && c != '\n';) line += c;
         return lower(trimmed(line));
     }
     /// Passes over the samples of an array that is not used.
     void skip(std::int64_t count, Stored stored, bool is_text) {
-        if (!is_text) in_.ignore(count * static_cast<std::int64_t>(size_of(stored)));
+        const auto bytes = static_cast<std::streamoff>(size_of(stored));
+        if (!is_text) in_.seekg(count * bytes, std::ios::cur);
         for (std::int64_t i = 0; is_text && i < count; ++i) (void)word();
     }
     /// Of the next byte.
@@ -44,7 +54,7 @@ class VtkWords {
     }
 
   private:
-    std::istringstream in_;
+    std::ifstream in_;
 };
 
 Stored stored_as_vtk(const std::string& type) {
@@ -73,7 +83,8 @@ struct VtkArray {
 /// VTK describes the array before it in lines that end with an empty one.
 void skip_metadata(VtkWords& words) {
     (void)words.rest();
-    while (!words.rest().empty()) continue;
+    while (!words.rest().empty()) {
+    }
 }
 
 VtkArray array_of_field(VtkWords& words) {
@@ -167,48 +178,129 @@ void check_vtk_count(std::int64_t told, const VolumeHeader& header) {
                   text_of(header.sizes) + "; correct its header");
 }
 
-/// The first array: SCALARS with their table of colours, COLOR_SCALARS, which is how VTK writes
-/// bytes, or the first one of a FIELD.
-void take_vtk_array(VtkWords& words, VolumeHeader& header) {
-    const std::string kind = words.word();
-    std::string components = "1";
+/// An array with numbers for each point or each cell.
+struct VtkSamples {
+    std::string kind;  ///< the word that it begins with
+    std::int64_t components = 1, count = 0;
+    Stored stored = Stored::uint8;
+    bool in_cells = false;
+    std::uint64_t offset = 0;  ///< of its first byte
+};
+
+/// Where a file is among its arrays.
+struct VtkSection {
+    bool in_cells = false;
+    std::int64_t count = 0;   ///< points or cells, as it says
+    std::int64_t fields = 0;  ///< arrays that are left of a FIELD
+};
+
+std::int64_t components_in(const std::string& text) {
+    const std::int64_t components = text.empty() ? 1 : whole_number_in(text, "components", 1);
+    if (components <= 1000) return components;
+    throw Failure("it has " + text.substr(0, 20) + " values a sample; give a volume with one");
+}
+
+/// An array that is not of a FIELD, by its first word: SCALARS with their table of colours,
+/// COLOR_SCALARS, which is how VTK writes bytes, or one with several numbers for each sample.
+VtkSamples samples_named(const std::string& kind, VtkWords& words, bool is_text) {
+    static const std::map<std::string, std::int64_t> several = {
+        {"vectors", 3}, {"normals", 3}, {"tensors", 9}, {"texture_coordinates", 0}};
+    VtkSamples samples;
+    samples.kind = kind;
+    const auto found = several.find(kind);
     if (kind == "scalars") {
         (void)words.word();  // a name
         std::istringstream rest(words.rest());
-        std::string type;
+        std::string type, components;
         rest >> type >> components;
         if (words.word() != "lookup_table") {
             throw Failure("its SCALARS have no LOOKUP_TABLE; it is damaged: export it again");
         }
         (void)words.rest();
-        header.stored = stored_as_vtk(type);
+        samples.components = components_in(components);
+        samples.stored = stored_as_vtk(type);
     } else if (kind == "color_scalars") {
         (void)words.word();
-        components = words.rest();
-        header.stored = Stored::uint8;
-        if (header.places.front().encoding == DataPlace::Encoding::text) {
+        samples.components = components_in(words.rest());
+        if (is_text) {
             throw Failure(
                 "its bytes are written as fractions in text (COLOR_SCALARS); save it as binary");
         }
-    } else if (kind == "field") {
-        (void)words.rest();
-        const VtkArray array = array_of_field(words);
-        components = array.components;
-        header.stored = array.stored;
-        check_vtk_count(array.samples, header);
+    } else if (found != several.end()) {
+        (void)words.word();
+        samples.components = found->second > 0 ? found->second : components_in(words.word());
+        samples.stored = stored_as_vtk(words.rest());
     } else {
-        throw Failure("its first array is '" + kind.substr(0, 40) +
-                      "' and no SCALARS (vectors, colours); save one value per sample");
+        throw Failure("it has an array '" + kind.substr(0, 40) +
+                      "', which is not read; save it as .vti");
     }
-    if (components != "1") {
-        throw Failure("it has " + components.substr(0, 20) +
-                      " values a sample (colours or vectors); give a volume with one");
+    return samples;
+}
+
+/// The next array; the words end before its first byte. Nothing at the end.
+std::optional<VtkSamples> next_samples(VtkWords& words, VtkSection& section, bool is_text) {
+    VtkSamples samples;
+    for (std::string kind; section.fields == 0;) {
+        if (!words.next(kind)) return std::nullopt;
+        if (kind == "point_data" || kind == "cell_data") {
+            section = {kind == "cell_data", whole_number_in(words.rest(), kind, 0)};
+        } else if (kind == "metadata") {
+            skip_metadata(words);
+        } else if (kind == "field") {
+            (void)words.word();
+            section.fields = whole_number_in(words.rest(), kind, 0);
+        } else if (kind == "lookup_table") {
+            (void)words.word();
+            words.skip(4 * whole_number_in(words.rest(), kind, 0), Stored::uint8, is_text);
+        } else {
+            samples = samples_named(kind, words, is_text);
+            samples.count = section.count;
+            break;
+        }
     }
+    if (samples.kind.empty()) {
+        --section.fields;
+        const VtkArray array = array_of_field(words);
+        samples = {"field", components_in(array.components), array.samples, array.stored};
+    }
+    samples.in_cells = section.in_cells;
+    samples.offset = words.offset();
+    return samples;
+}
+
+/// The first array of points with one value for each, or else of cells, which ParaView writes
+/// before those of points. `section`: the first one.
+VtkSamples chosen_samples(VtkWords& words, VtkSection section, bool is_text,
+                          std::vector<std::string>& notes) {
+    std::optional<VtkSamples> first, of_cells;
+    try {
+        while (const auto samples = next_samples(words, section, is_text)) {
+            const bool is_new = !first;
+            if (is_new) first = samples;
+            if (samples->components == 1 && !samples->in_cells) {
+                if (!is_new) {
+                    notes.emplace_back(
+                        "it has several arrays: the first one of points with one value per sample "
+                        "was taken");
+                }
+                return *samples;
+            }
+            if (samples->components == 1 && !of_cells) of_cells = samples;
+            words.skip(samples->count * samples->components, samples->stored, is_text);
+        }
+    } catch (const Failure&) {  // of what is behind an array
+        if (!first) throw;
+    }
+    if (of_cells) return *of_cells;
+    if (!first) throw Failure("it has no samples; export it again");
+    throw Failure("it has " + std::to_string(first->components) +
+                  " values a sample (colours or vectors); give a volume with one");
 }
 
 }  // namespace
 
 VolumeHeader vtk_header(const Request& request) {
+    if (is_gzip(request.path)) throw Failure("is packed; unpack it and give what is in it");
     VtkWords words(request.path);
     if (!words.rest().starts_with("# vtk datafile")) {
         throw Failure("is no file of VTK (it does not begin with # vtk DataFile); check its name");
@@ -228,13 +320,15 @@ VolumeHeader vtk_header(const Request& request) {
             "has a mesh or another grid than an image (STRUCTURED_POINTS); resample it to an "
             "image, and save that as .vti");
     }
+    const bool is_text = encoding == "ascii";
     std::string kind;
-    const VtkFields fields = vtk_fields(words, encoding == "ascii", kind);
-    const auto told = whole_number_in(words.rest(), kind, 0);
-    take_vtk_grid(fields, kind == "cell_data", header);
-    check_vtk_count(told, header);
-    take_vtk_array(words, header);
-    place.offset = words.offset();
+    const VtkFields fields = vtk_fields(words, is_text, kind);
+    const VtkSection section{kind == "cell_data", whole_number_in(words.rest(), kind, 0)};
+    const VtkSamples samples = chosen_samples(words, section, is_text, header.notes);
+    take_vtk_grid(fields, samples.in_cells, header);
+    check_vtk_count(samples.count, header);
+    header.stored = samples.stored;
+    place.offset = samples.offset;
     place.swapped = std::endian::native == std::endian::little;
     place.footer = DataPlace::Footer::words;
     checked_bytes(header.sizes, size_of(header.stored), std::filesystem::file_size(request.path),

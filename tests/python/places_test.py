@@ -265,6 +265,53 @@ def test_directions_of_nrrd_without_a_space_are_refused_with_what_to_do(tmp_path
     refused(nrrd(tmp_path / "a.nrrd", ramp("i2"), "space directions: (1,0,0) (0,1,0) (0,0,1)"), "space dimension: 3")
 
 
+# VTK's older format -----------------------------------------------------------------------------------------
+
+
+def numbers(data, text):
+    return " ".join(map(str, data.ravel())).encode() + b"\n" if text else data.astype(data.dtype.newbyteorder(">")).tobytes() + b"\n"
+
+
+def vtk_file(path, text, *arrays):
+    size = "DATASET STRUCTURED_POINTS\nDIMENSIONS 6 4 5\nSPACING 1 2 3\nORIGIN 10 20 30\n"
+    path.write_bytes(f"# vtk DataFile Version 5.1\nof ParaView\n{'ASCII' if text else 'BINARY'}\n{size}".encode() + b"".join(
+        (head + "\n").encode() + (b"" if data is None else numbers(data, text)) for head, data in arrays))
+    return path
+
+
+POINTS = (("POINT_DATA 120", None), ("SCALARS density short\nLOOKUP_TABLE default", ramp("i2")))
+CELLS = (("CELL_DATA 60", None), ("SCALARS other float\nLOOKUP_TABLE default", numpy.arange(60, dtype="f4")))
+META = ("METADATA\nINFORMATION 1\nNAME L2_NORM_RANGE LOCATION vtkDataArray\nDATA 2 0 249\n", None)
+OTHERS = (("VECTORS velocity float", numpy.arange(360, dtype="f4")), ("NORMALS n double", numpy.ones(360)), ("TENSORS t float", numpy.ones(1080, "f4")),
+          ("TEXTURE_COORDINATES uv 2 float", numpy.ones(240, "f4")), ("SCALARS pair short 2\nLOOKUP_TABLE default", numpy.ones(240, "i2")),
+          ("FIELD FieldData 2\nvector 3 120 float", numpy.ones(360, "f4")), ("weight 2 120 double", numpy.ones(240)))
+
+
+@pytest.mark.parametrize("text", (False, True))
+def test_samples_of_points_are_found_behind_other_arrays_of_vtk(tmp_path, text):
+    """elrnv/vtkio#3 (ParaView writes cells first), nschloe/meshio#1205"""
+    rest = ("FIELD FieldData 2\nvector 3 120 float", OTHERS[0][1]), ("density 1 120 short", ramp("i2"))
+    for arrays in ((*CELLS, *POINTS), (*CELLS, META, *POINTS, META), (POINTS[0], *OTHERS, META, POINTS[1]), (POINTS[0], *rest),
+                   (*CELLS, POINTS[0], *OTHERS[:1], *rest)):
+        path = vtk_file(tmp_path / "a.vtk", text, *arrays)
+        volume = noted(path, "several arrays")
+        assert numpy.array_equal(volume.array, ramp("i2")) and numpy.array_equal(volume.geometry.origin, (10, 20, 30))
+        if not text:
+            store = palpate.open_store(path)
+            assert numpy.array_equal(store.read((0, 0, 0), store.levels[0].size).array, ramp("i2"))
+
+
+@pytest.mark.parametrize("text", (False, True))
+def test_without_samples_of_points_those_of_cells_are_taken(tmp_path, text):
+    vectors = ("VECTORS velocity float", numpy.ones(180, "f4"))
+    for arrays in ((*CELLS, POINTS[0], *OTHERS), (CELLS[0], vectors, CELLS[1], META, POINTS[0], *OTHERS), (POINTS[0], *OTHERS, *CELLS)):
+        volume = noted(vtk_file(tmp_path / "a.vtk", text, *arrays), "centres")
+        assert numpy.array_equal(volume.array.ravel(), numpy.arange(60)) and numpy.array_equal(volume.geometry.origin, (10.5, 21, 31.5))
+    refused(vtk_file(tmp_path / "a.vtk", text, POINTS[0], *OTHERS), "3 values a sample")
+    refused(vtk_file(tmp_path / "a.vtk", text, POINTS[0]), "no samples")
+    refused(vtk_file(tmp_path / "a.vtk", text, POINTS[0], ("SCALARS d short 99999\nLOOKUP_TABLE default", None)), "99999 values")
+
+
 # Meshes -----------------------------------------------------------------------------------------------------
 
 
