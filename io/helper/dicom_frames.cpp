@@ -18,13 +18,11 @@ namespace palpate::io {
 namespace {
 
 constexpr DicomTag frame_time{0x0018, 0x1063}, frame_times{0x0018, 0x1065};
+constexpr DicomTag shared_groups{0x5200, 0x9229};
 constexpr double default_step = 1;  // [mm] if nothing gives the distance between slices
 
-DicomSlice enhanced_frame(const DicomSlice& file, int number, const FunctionalGroups& groups,
-                          const Segments& segments) {
-    DicomSlice s = file;
-    s.frame = s.order = number;
-    s.keys[frame_number] = number;
+/// The place of frames and the meaning of their values.
+void take_groups(DicomSlice& s, const FunctionalGroups& groups) {
     groups.with({0x0028, 0x9110}, [&](const DicomGroup& g) { set_pixel(s, g); });
     groups.with({0x0020, 0x9113}, [&](const DicomGroup& g) { set_place(s, g); });
     groups.with({0x0020, 0x9116}, [&](const DicomGroup& g) { set_place(s, g); });
@@ -38,6 +36,14 @@ DicomSlice enhanced_frame(const DicomSlice& file, int number, const FunctionalGr
     groups.with({0x0020, 0x930f}, [&](const DicomGroup& g) {
         set_place(s, {}, g.binary<double>({0x0020, 0x9302}));
     });
+}
+
+DicomSlice enhanced_frame(const DicomSlice& file, int number, const FunctionalGroups& groups,
+                          const Segments& segments) {
+    DicomSlice s = file;
+    s.frame = s.order = number;
+    s.keys[frame_number] = number;
+    take_groups(s, groups);
     set_kind(s, groups, segments);
     set_moment(s, groups);
     return s;
@@ -137,7 +143,7 @@ std::vector<DicomSlice> enhanced_frames(const DicomSlice& file, const DicomGroup
                       " frames, and describes " + std::to_string(frames.size()) +
                       "; copy or export it again");
     }
-    const auto shared = data.items({0x5200, 0x9229});
+    const auto shared = data.items(shared_groups);
     const Segments segments = segments_in(data);
     std::vector<DicomSlice> slices;
     std::set<std::pair<double, double>> directions;  // [degrees] of X-rays
@@ -172,11 +178,11 @@ bool has_time(const DicomGroup& data) {
     return data.has(frame_time) || data.has(frame_times);
 }
 
-Counted counted(const DicomGroup& data) {
+Counted counted(const DicomGroup& data, double between) {
     const auto pointers = data.tags({0x0028, 0x0009});
     if (pointers.empty()) {
         // A distance between frames says more than a time, which many writers leave there.
-        const bool is_stack = !is_film(data) && data.number(between_tag, 0) != 0;
+        const bool is_stack = !is_film(data) && between != 0;
         return has_time(data) && !is_stack ? Counted::by_time
                : data.has(grid_offsets)    ? Counted::by_offset
                                            : Counted::by_nothing;
@@ -253,13 +259,14 @@ std::vector<DicomSlice> plain_frames(DicomSlice file, const DicomGroup& data) {
         for (DicomSlice& s : slices) s.notes.push_back(text);
     };
     const std::string all = "its " + std::to_string(file.frames) + " frames ";
-    const Counted by = counted(data);
+    const double between = data.number(between_tag, file.between);  // negative: against the normal
+    const Counted by = counted(data, between);
     if (by == Counted::otherwise) {
         throw Failure(quoted(file.file) +
                       " counts its frames by more than their place or time (projections, phases); "
                       "export a reconstructed volume");
     }
-    const bool has_place = file.position || data.has(between_tag);
+    const bool has_place = file.position || data.has(between_tag) || file.between > 0;
     if (by == Counted::by_time || (by == Counted::by_nothing && !has_place && is_film(data))) {
         set_film(slices, data);
         return slices;
@@ -279,7 +286,6 @@ std::vector<DicomSlice> plain_frames(DicomSlice file, const DicomGroup& data) {
     }
     const std::vector<int> order = order_of(file, data);
     for (std::size_t i = 0; i < slices.size(); ++i) slices[i].order = order[i];
-    const double between = data.number(between_tag, 0);  // negative: against the normal
     check_coordinate(between, "DICOM tag SpacingBetweenSlices");
     if (between != 0) {
         if (by == Counted::by_nothing && has_time(data)) {
@@ -299,7 +305,19 @@ std::vector<DicomSlice> plain_frames(DicomSlice file, const DicomGroup& data) {
 
 std::vector<DicomSlice> frames_in(const DicomSlice& file, const DicomGroup& data) {
     if (data.has(groups_of_frames)) return enhanced_frames(file, data);
-    return file.frames == 1 ? std::vector{file} : plain_frames(file, data);
+    const auto shared = data.items(shared_groups);
+    DicomSlice described = file;
+    if (!shared.empty()) take_groups(described, FunctionalGroups(shared.front(), nullptr));
+    if (file.frames == 1) return {described};
+    std::vector<DicomSlice> slices = plain_frames(described, data);
+    for (DicomSlice& s : slices) {
+        if (shared.empty()) break;
+        s.is_sided = false;
+        add_note(s.notes,
+                 "it describes its " + std::to_string(file.frames) +
+                     " frames all together, and none alone: they were taken in their order");
+    }
+    return slices;
 }
 
 }  // namespace palpate::io

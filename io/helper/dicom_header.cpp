@@ -13,6 +13,7 @@
 #include "io/helper/dicom_place.hpp"
 #include "io/helper/dicom_values.hpp"
 #include "io/helper/headers.hpp"
+#include "io/system/number.hpp"
 
 namespace palpate::io {
 namespace {
@@ -71,6 +72,20 @@ DicomSlice file_as_slice(const fs::path& file, const DicomExtent& extent, const 
     return s;
 }
 
+/// Siemens and United Imaging pack a whole volume into one flat image, side by side. An enhanced
+/// file of Siemens keeps the mark of a mosaic, although each slice is a frame of its own.
+bool is_mosaic(const DicomGroup& data, int frames) {
+    if (frames > 1) return false;
+    const std::string type = data.text({0x0008, 0x0008});
+    if (type.find("MOSAIC") != type.npos || type.find("VFRAME") != type.npos) return true;
+    if (data.text({0x0019, 0x0010}) == "SIEMENS MR HEADER") {
+        const auto slices = data.counts({0x0019, 0x100a});
+        if (!slices.empty() && slices[0] > 1) return true;
+    }
+    return data.text({0x0065, 0x0010}) == "Image Private Header" &&
+           number_from<double>(data.text({0x0065, 0x1050})).value_or(0) > 1;
+}
+
 std::vector<DicomSlice> slices_of(const fs::path& file) {
     const DicomExtent extent = check_dicom(file);
     // Reports, plans and the folder's index have no rows; an image that has none is cut off.
@@ -96,8 +111,7 @@ std::vector<DicomSlice> slices_of(const fs::path& file) {
     }
     const DicomGroup data(reader.GetFile().GetDataSet());
     const DicomSlice slice = file_as_slice(file, extent, data);
-    // Siemens packs a whole volume into one flat image, side by side.
-    if (data.text({0x0008, 0x0008}).find("MOSAIC") != std::string::npos) {
+    if (is_mosaic(data, slice.frames)) {
         throw Failure(quoted(file) +
                       " is a mosaic of slices; convert it to NIfTI (dcm2niix) and give that file");
     }
@@ -107,7 +121,9 @@ std::vector<DicomSlice> slices_of(const fs::path& file) {
                       " has the tiles of a microscope's slide, which are no slices of a volume; "
                       "convert it to OME-TIFF");
     }
-    return frames_in(slice, data);
+    std::vector<DicomSlice> slices = frames_in(slice, data);
+    for (DicomSlice& s : slices) finish_values(s, data);
+    return slices;
 }
 
 }  // namespace

@@ -48,10 +48,10 @@ class DecoderWords {
         std::string damage;
         for (std::string line; std::getline(lines, line);) {
             // GDCM tries libraries for 8, 12 and 16 bits in turn; for the wrong ones, it says the
-            // last two of these.
+            // second and the third of these. The last one is about the wrapping of a whole image.
             const auto says = [&](const char* words) { return line.find(words) != line.npos; };
             if (says("Warning: In ") || says("Unsupported JPEG data precision") ||
-                says("DICOM header said it was ")) {
+                says("DICOM header said it was ") || says("J2K start like JPEG-2000")) {
                 continue;
             }
             damage += line + '\n';

@@ -1,6 +1,7 @@
 // Reads the place, the orientation and the size of pixels from DICOM elements. See the header.
 #include "io/helper/dicom_place.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -54,6 +55,10 @@ void set_place(DicomSlice& s, const std::vector<double>& p, const std::vector<do
         s.position = Vec3(p[0], p[1], p[2]);
     }
     if (axes.empty()) return;
+    if (std::ranges::all_of(axes, [](double component) { return component == 0; })) {
+        add_note(s.notes, "its ImageOrientationPatient has only zeros: it was ignored");
+        return;
+    }
     s.row = Vec3(axes[0], axes[1], axes[2]);
     s.column = Vec3(axes[3], axes[4], axes[5]);
     for (const auto& direction : {s.row, s.column}) {
@@ -80,6 +85,10 @@ void set_pixel(DicomSlice& s, const DicomGroup& measures) {
         }
         if (pixel.size() != 2 && tag != pixel_tag) continue;
         check_count(pixel, 2, "PixelSpacing");
+        if (pixel[0] == 0 && pixel[1] == 0) {
+            add_note(s.notes, "its pixel spacing of 0 mm was ignored");
+            continue;
+        }
         check_spacing(pixel[0], "DICOM tag PixelSpacing");
         check_spacing(pixel[1], "DICOM tag PixelSpacing");
         s.pixel = Vec3(pixel[1], pixel[0], 0);  // DICOM gives the distance between rows first

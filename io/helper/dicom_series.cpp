@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <map>
 
@@ -61,26 +62,58 @@ void name_echo(DicomSeries& series) {
     }
 }
 
-bool has_several_at_one_place(const DicomSeries& series) {
+/// How many slices lie at each place.
+std::vector<int> counts_at_places(const DicomSeries& series) {
     const std::vector<double> along = places_along(series);
     const double least = same_place_mm(series);
-    return std::ranges::adjacent_find(along, [&](double a, double b) { return b - a <= least; }) !=
-           along.end();
+    std::vector<int> counts;
+    for (std::size_t i = 0; i < along.size(); ++i) {
+        if (i == 0 || along[i] - along[i - 1] > least) counts.push_back(0);
+        ++counts.back();
+    }
+    return counts;
+}
+
+bool has_several_at_one_place(const DicomSeries& series) {
+    return std::ranges::any_of(counts_at_places(series), [](int count) { return count > 1; });
+}
+
+/// The parts of a series that a property of its slices tells apart, which their kinds then name.
+template <class Name>
+std::vector<DicomSeries> divided(DicomSeries series, const Name& name_of) {
+    std::map<std::string, DicomSeries> parts;
+    for (DicomSlice& s : series.slices) {
+        const std::string name = name_of(s);
+        DicomSeries& one = parts[name];
+        one.uid = series.uid;
+        s.kind += (s.kind.empty() || name.empty() ? "" : ", ") + name;
+        one.slices.push_back(std::move(s));
+    }
+    std::vector<DicomSeries> all;
+    for (auto& [name, one] : parts) all.push_back(std::move(one));
+    return all;
 }
 
 /// Contrasts (water, fat) apart, where there are several at one place.
 std::vector<DicomSeries> by_contrast(DicomSeries series) {
     if (!has_several_at_one_place(series)) return {std::move(series)};
-    std::map<std::string, DicomSeries> contrasts;
-    for (DicomSlice& s : series.slices) {
-        DicomSeries& one = contrasts[s.contrast];
-        one.uid = series.uid;
-        s.kind += (s.kind.empty() || s.contrast.empty() ? "" : ", ") + s.contrast;
-        one.slices.push_back(std::move(s));
+    return divided(std::move(series), [](const DicomSlice& s) { return s.contrast; });
+}
+
+/// Acquisitions apart, where they overlap: some places have slices of several of them, but not all
+/// places, as those of time steps have.
+std::vector<DicomSeries> by_acquisition(DicomSeries series) {
+    const std::vector<int> counts = counts_at_places(series);
+    if (counts.empty() || std::ranges::adjacent_find(counts, std::not_equal_to()) == counts.end()) {
+        return {std::move(series)};
     }
-    std::vector<DicomSeries> all;
-    for (auto& [name, one] : contrasts) all.push_back(std::move(one));
-    return all;
+    const auto parts = divided(series, [](const DicomSlice& s) {
+        const double number = s.frames == 1 ? s.keys.at(acquisition_number) : 0;
+        return number > 0 ? "acquisition " + text_of(number) : "";
+    });
+    const bool are_apart =
+        parts.size() > 1 && std::ranges::none_of(parts, has_several_at_one_place);
+    return are_apart ? parts : std::vector{std::move(series)};
 }
 
 /// An anonymiser may give each file an identity of its own. It then tells nothing apart.
@@ -146,7 +179,9 @@ std::vector<DicomSeries> series_of(std::vector<DicomSlice> slices) {
     for (auto& [key, alike] : sorted) {
         for (DicomSeries& one : alike) {
             name_echo(one);
-            std::ranges::move(by_contrast(std::move(one)), std::back_inserter(all));
+            for (DicomSeries& contrast : by_contrast(std::move(one))) {
+                std::ranges::move(by_acquisition(std::move(contrast)), std::back_inserter(all));
+            }
         }
     }
     return all;

@@ -13,6 +13,7 @@ namespace {
 
 constexpr DicomTag intercept_tag{0x0028, 0x1052}, slope_tag{0x0028, 0x1053},
     dose_tag{0x3004, 0x000e};
+constexpr const char* unspecified = "US";  // units
 
 /// The number of a tag that has one, or one again and again; nothing if it is not there.
 std::vector<double> one_number(const DicomGroup& group, DicomTag tag, const std::string& name) {
@@ -72,7 +73,7 @@ void set_table(DicomSlice& s, const DicomGroup& data) {
     s.table = std::make_shared<const ValueTable>(std::move(table));
     s.has_rescale = true;
     const std::string units = items.front().text({0x0028, 0x3004});
-    s.values.units = units == "US" ? "" : units;
+    s.values.units = units.empty() ? unspecified : units;
     s.notes.emplace_back("the table of values in its header (Modality LUT) was applied");
 }
 
@@ -96,7 +97,7 @@ void set_rescale(DicomSlice& s, const DicomGroup& transformation) {
     check_number(s, s.slope, s.slope != 0 && std::isfinite(s.slope), "RescaleSlope", 1);
     check_number(s, s.intercept, std::isfinite(s.intercept), "RescaleIntercept", 0);
     const std::string units = transformation.text({0x0028, 0x1054});
-    if (!units.empty() && units != "US") s.values.units = units;  // "US": unspecified
+    if (!units.empty()) s.values.units = units;
 }
 void set_window(DicomSlice& s, const DicomGroup& group) {
     const double centre = group.number({0x0028, 0x1050}, 0);
@@ -111,14 +112,22 @@ void note_value_mapping(DicomSlice& s) {
 
 void set_values(DicomSlice& s, const DicomGroup& data) {
     s.values.modality = data.text({0x0008, 0x0060});
-    if (s.values.modality == "CT") s.values.units = "HU";
     set_rescale(s, data);
-    if (s.values.units.empty()) s.values.units = data.text({0x0054, 0x1001});  // of PET
+    const std::string of_pet = data.text({0x0054, 0x1001});
+    if (!of_pet.empty() && (s.values.units.empty() || s.values.units == unspecified)) {
+        s.values.units = of_pet;
+    }
     set_scaling(s, data);
     set_window(s, data);
-    set_padding(s, data);
     set_table(s, data);
     if (data.has(value_mapping)) note_value_mapping(s);
+}
+
+void finish_values(DicomSlice& s, const DicomGroup& data) {
+    set_padding(s, data);
+    // PS3.3 C.8.2.1: values of CT are in HU unless their type is given.
+    if (s.values.units.empty() && s.values.modality == "CT" && s.has_rescale) s.values.units = "HU";
+    if (s.values.units == unspecified) s.values.units.clear();
 }
 
 }  // namespace palpate::io

@@ -12,6 +12,9 @@ inline constexpr DicomTag value_mapping{0x0040, 0x9096};
 
 /// All of a file. Throws Failure.
 void set_values(DicomSlice& slice, const DicomGroup& data);
+/// What depends on the slope and the units of the frame: padding, and whether a CT is in HU. Once
+/// these are known.
+void finish_values(DicomSlice& slice, const DicomGroup& data);
 
 /// Of a frame, from its functional groups. Elements that are not there change nothing.
 void set_rescale(DicomSlice& slice, const DicomGroup& transformation);

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "io/helper/dicom_header.hpp"
+#include "io/helper/dicom_index.hpp"
 #include "io/helper/dicom_library.hpp"
 #include "io/helper/dicom_series.hpp"
 #include "io/helper/dicom_stack.hpp"
@@ -135,12 +136,19 @@ void note_files(const std::vector<DicomSlice>& slices, std::vector<std::string>&
 }
 
 /// Slices without slope or intercept among others that have both: a program may have lost these.
+/// And a CT without them, whose values have no unit.
 void note_missing_rescale(const std::vector<DicomSlice>& slices, std::vector<std::string>& notes) {
     const auto changes = [](const DicomSlice& s) {
         return s.has_rescale && (s.table || s.slope != 1 || s.intercept != 0);
     };
     const auto lacks = [](const DicomSlice& s) { return !s.has_rescale; };
     const auto first = std::ranges::find_if(slices, lacks);
+    if (std::ranges::all_of(slices, lacks) && slices.front().values.modality == "CT") {
+        notes.emplace_back(
+            "it gives no slope or no intercept (RescaleSlope, RescaleIntercept): its values are "
+            "not known to be HU");
+        return;
+    }
     if (first == slices.end() || std::ranges::none_of(slices, changes)) return;
     const auto count = std::ranges::count_if(slices, lacks);
     notes.push_back(
@@ -353,6 +361,20 @@ void check_others(const std::vector<fs::path>& slices, const std::vector<fs::pat
     }
 }
 
+/// Files that the folder's index lists may have been slices of the series.
+void note_missing_images(const std::vector<fs::path>& files, std::vector<std::string>& notes) {
+    for (const fs::path& file : files) {
+        if (!is_dicom_index(file)) continue;
+        const MemoryBound bound(8 * fs::file_size(file));
+        const auto missing = images_missing(file, files);
+        if (missing.empty()) continue;
+        notes.push_back(
+            "its index (" + file.filename().string() + ") lists " + std::to_string(missing.size()) +
+            " images that are not in the folder, the first is " + quoted(fs::path(missing[0])) +
+            ": if they belong to this series, it is not complete");
+    }
+}
+
 Result read_folder(const Request& request) {
     std::vector<fs::path> files, others;
     const auto take = [&](const fs::directory_entry& entry) {
@@ -376,7 +398,9 @@ Result read_folder(const Request& request) {
     if (slices.empty())
         throw Failure("has DICOM files, but none with an image; give another folder");
     const auto all = series_of(std::move(slices));
-    return read_chosen(all, request);
+    Result result = read_chosen(all, request);
+    note_missing_images(files, result.notes);
+    return result;
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 // Which program a file is for, where its name does not say it, or says it to several.
+#include <algorithm>
 #include <cstring>
 #include <fstream>
 
@@ -64,13 +65,15 @@ bool has_dicom_name(const fs::path& file) {
     return extension == ".dcm" || extension == ".dicom" || extension == ".ima";
 }
 
+bool is_dicom_index(const fs::path& file) {
+    return lower(file.filename().string()) == "dicomdir";
+}
+
 bool has_dicom_index(const fs::path& folder) {
-    for (const auto& entry : fs::directory_iterator(folder)) {
-        if (is_shown_file(entry) && lower(entry.path().filename().string()) == "dicomdir") {
-            return true;
-        }
-    }
-    return false;
+    const auto is_index = [](const fs::directory_entry& entry) {
+        return is_shown_file(entry) && is_dicom_index(entry.path());
+    };
+    return std::ranges::any_of(fs::directory_iterator(folder), is_index);
 }
 
 bool begins_as_tiff(const fs::path& file) {

@@ -32,6 +32,8 @@ bool begins_as_dicom(const std::filesystem::path& file);
 bool looks_like_dicom(const std::filesystem::path& file);
 /// Whether a name says DICOM, also of a packed file.
 bool has_dicom_name(const std::filesystem::path& file);
+/// Whether a file lists the slices of a disc (DICOMDIR).
+bool is_dicom_index(const std::filesystem::path& file);
 /// Whether a folder is a disc's: its slices are in folders of folders.
 bool has_dicom_index(const std::filesystem::path& folder);
 /// TIFF's first four bytes, whatever the name (.lsm, .btf, .tf8, ...).
