@@ -230,7 +230,8 @@ ImageArray Hdf5File::array(const std::string& path) const {
         array.codecs = codecs_of(properties, size_of(*stored));
     } else if (H5Pget_layout(properties) != H5D_CONTIGUOUS ||
                H5Pget_external_count(properties) != 0) {
-        throw Failure(named(path) + " is neither in chunks nor in one piece of the file");
+        throw Failure(named(path) +
+                      " is neither in chunks nor in one piece of the file; store it in chunks");
     }
     for (std::size_t a = 0; a < 3; ++a) {
         constexpr hsize_t longest = hsize_t{1} << 40;

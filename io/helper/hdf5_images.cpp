@@ -158,6 +158,16 @@ struct BdvSetup {
     bool has_spacing = false;
 };
 
+/// The setup's attribute `dataType`, which newer files have, says what HDF5's numbers are. Without
+/// it, BigDataViewer keeps its 16 bits without a sign in HDF5's with one.
+Stored bdv_type(const Hdf5File& file, int setup, Stored stored) {
+    const auto told = stored_named(file.text(with_number("/s%02d", setup), "dataType"));
+    if (told && size_of(*told) == size_of(stored) && is_real(*told) == is_real(stored)) {
+        return *told;
+    }
+    return stored == Stored::int16 ? Stored::uint16 : stored;
+}
+
 std::string resolutions_of(int setup) {
     return with_number("/s%02d/resolutions", setup);
 }
@@ -266,8 +276,7 @@ ChunkedImage bdv_image(const Hdf5File& file, const std::filesystem::path& path, 
     const auto factors = rows_of(file, resolutions_of(id));
     for (std::size_t l = 0; l < factors.size(); ++l) {
         ImageArray level = file.array(moment + "/" + std::to_string(l) + "/cells");
-        // BigDataViewer keeps its 16 bits without a sign in HDF5's with one.
-        if (level.stored == Stored::int16) level.stored = Stored::uint16;
+        level.stored = bdv_type(file, id, level.stored);
         place(level, setup.spacing, {0, 0, 0}, factors[l]);
         image.levels.push_back(level);
     }

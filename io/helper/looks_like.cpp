@@ -76,6 +76,13 @@ bool has_dicom_index(const fs::path& folder) {
     return std::ranges::any_of(fs::directory_iterator(folder), is_index);
 }
 
+bool begins_as_hdf5(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::string start(8, ' ');
+    in.read(start.data(), 8);
+    return start == "\x89HDF\r\n\x1a\n";
+}
+
 bool begins_as_tiff(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
     std::string start(4, ' ');

@@ -135,6 +135,7 @@ const char* program_for_file(const fs::path& path) {
             "there, or save the pair as one .nii file");
     }
     if (const std::string advice = advice_for(extension); !advice.empty()) throw Failure(advice);
+    if (begins_as_hdf5(path)) throw Failure(advice_for(".h5"));  // NeXus, netCDF and others
     throw Failure(
         "has no extension of a known format (nrrd, nhdr, mha, mhd, nii, nii.gz, mgh, mgz, mrc, "
         "dcm, tif, vti, vtk); if it holds nothing but samples, give its dims and type");

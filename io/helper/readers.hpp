@@ -38,6 +38,8 @@ bool is_dicom_index(const std::filesystem::path& file);
 bool has_dicom_index(const std::filesystem::path& folder);
 /// TIFF's first four bytes, whatever the name (.lsm, .btf, .tf8, ...).
 bool begins_as_tiff(const std::filesystem::path& file);
+/// HDF5's first eight bytes, whatever the name (.nxs, .nc, ...).
+bool begins_as_hdf5(const std::filesystem::path& file);
 
 struct MeshSize {
     std::int64_t vertices = 0, triangles = 0;

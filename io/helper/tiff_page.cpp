@@ -72,6 +72,11 @@ TiffPage page_of(TIFF* tiff, const fs::path& file, std::vector<std::string>& not
     }
     const bool is_grey = photometric <= PHOTOMETRIC_MINISBLACK ||
                          photometric == PHOTOMETRIC_PALETTE || photometric == PHOTOMETRIC_MASK;
+    if (samples != 1 && photometric <= PHOTOMETRIC_MINISBLACK) {
+        throw Failure(quoted(file) + " has " + std::to_string(samples) +
+                      " values in each pixel (channels or slices in one page); save each of them "
+                      "as a page");
+    }
     if (samples != 1 || !is_grey) {
         throw Failure(quoted(file) + " has colours (" + std::to_string(samples) +
                       " values a sample, PhotometricInterpretation " + std::to_string(photometric) +

@@ -46,7 +46,13 @@ void check_readable(const fs::path& path) {
                          "with palpate convert");
     }
     if (status.type() == fs::file_type::not_found && name.find("://") != std::string::npos) {
-        throw InputError(name + ": begins with none of http://, https:// and s3://");
+        throw InputError(
+            name + ": begins with none of http://, https:// and s3://" +
+            (name.starts_with("file:")
+                 ? "; of a file or folder of this machine, give the path alone"
+             : name.starts_with("gs:")
+                 ? "; Google's storage is read as https://storage.googleapis.com/BUCKET/NAME"
+                 : ""));
     }
     if (status.type() == fs::file_type::not_found) {
         throw InputError(name + ": does not exist; check the name");

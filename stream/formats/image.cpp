@@ -187,7 +187,8 @@ class Taking {
         try {
             check(level.geometry);
         } catch (const std::invalid_argument& e) {
-            throw BadMetadata(std::string("its place in space is not possible (") + e.what() + ")");
+            throw BadMetadata(std::string("its place in space is not possible (") + e.what() +
+                              "); correct its metadata");
         }
         level.geometry = orthonormal(level.geometry);
         return level;

@@ -114,7 +114,9 @@ ChunkedArray zarr2_array(const Json& zarray, const std::string& folder) {
     if (order == "F") std::ranges::reverse(array.stored_axes);
     const Json& filters = member(zarray, "filters");
     if (filters.is_array() && !filters.empty()) {
-        refuse_codec(filters[0].at("id").get<std::string>());
+        throw BadMetadata("its filter '" +
+                          io::one_line(filters[0].at("id").get<std::string>().substr(0, 40)) +
+                          "' is not read; store it without filters");
     }
     const Json& compressor = member(zarray, "compressor");
     if (!compressor.is_null()) {

@@ -50,13 +50,13 @@ class HttpObjects : public Objects {
           stop_(std::move(stop)),
           client_({options.requests, options.timeout_s, options.attempts}, traffic_) {
         base_ = address.find("://") == s3.find("://") ? url_of_s3(address) : address;
+        for (std::size_t at = 0; (at = base_.find(' ', at)) != std::string::npos;) {
+            base_.replace(at, 1, "%20");
+        }
         const std::size_t question = std::min(base_.find('?'), base_.size());
         query_ = base_.substr(question);
         base_.resize(question);
         while (base_.ends_with('/')) base_.pop_back();
-        for (std::size_t at = 0; (at = base_.find(' ', at)) != std::string::npos;) {
-            base_.replace(at, 1, "%20");
-        }
     }
 
     std::string name_of(const std::string& key) const override {

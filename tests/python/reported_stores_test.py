@@ -1,0 +1,119 @@
+"""Stores, TIFF and HDF5 of kinds that people report to other programs: unusual addresses, and the advice of refusals."""
+
+import functools
+import http.server
+import json
+import threading
+
+import h5py
+import numpy
+import palpate
+import pytest
+import tifffile
+import zarr
+from numcodecs import BitRound, Delta, FixedScaleOffset
+from readers_test import ramp, refused
+
+
+def refused_store(address, *words):
+    with pytest.raises(palpate.InputError) as caught:
+        palpate.open_store(address)
+    message = str(caught.value)
+    assert "\n" not in message and all(word in message for word in words), message
+
+
+# Addresses --------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def served(tmp_path):
+    """The address of a server, and the requests that it got."""
+    requests = []
+
+    class Handler(http.server.SimpleHTTPRequestHandler):
+        def do_GET(self):
+            requests.append(self.path)
+            super().do_GET()
+
+        def log_message(self, *_):
+            pass
+
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Handler, directory=tmp_path))
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    yield f"http://127.0.0.1:{server.server_port}", requests
+    server.shutdown()
+    server.server_close()
+
+
+@pytest.mark.parametrize("query", ("", "?name=a b", "?name=a%20b&version= 1"))
+@pytest.mark.parametrize("name", ("a.zarr", "a b.zarr", "ä 脳.zarr"))
+def test_blanks_anywhere_in_an_address_are_escaped(tmp_path, served, name, query):
+    address, requests = served
+    zarr.save_array(str(tmp_path / name), ramp("u2"), chunks=(2, 4, 6))
+    store = palpate.open_store(f"{address}/{name}{query}")
+    assert numpy.array_equal(store.read((0, 0, 0), store.levels[0].size).array, ramp("u2"))
+    assert all(request.endswith(query.replace(" ", "%20")) for request in requests)
+
+
+@pytest.mark.parametrize("address, words", (
+    ("file:///data/a.zarr", "give the path alone"), ("gs://bucket/a.zarr", "https://storage.googleapis.com/BUCKET/NAME"),
+    ("ftp://host/a.zarr", "begins with none of http://")))
+def test_an_address_of_another_kind_is_refused_with_the_way_to_write_it(address, words):
+    refused_store(address, words)
+
+
+# Zarr -------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name, codec", (("delta", Delta("f4")), ("bitround", BitRound(8)),
+                                         ("fixedscaleoffset", FixedScaleOffset(0, 10, "f4", "i2"))))
+def test_a_filter_is_refused_by_its_name(tmp_path, name, codec):
+    array = zarr.open(str(tmp_path / "a.zarr"), mode="w", shape=(5, 4, 6), dtype="f4", chunks=(2, 4, 6), filters=[codec])
+    array[:] = ramp("f4")
+    refused_store(tmp_path / "a.zarr", f"filter '{name}'", "store it without filters")
+
+
+def test_a_scale_of_zero_is_refused_with_what_to_correct(tmp_path):
+    group = zarr.open_group(str(tmp_path / "a.zarr"), mode="w")
+    group.create_dataset("0", data=ramp("u2"), chunks=(2, 4, 6))
+    axes = [{"name": name, "type": "space", "unit": "micrometer"} for name in "zyx"]
+    transform = [{"type": "scale", "scale": [0, 1, 1]}]
+    (tmp_path / "a.zarr/.zattrs").write_text(json.dumps(
+        {"multiscales": [{"version": "0.4", "axes": axes, "datasets": [{"path": "0", "coordinateTransformations": transform}]}]}))
+    refused_store(tmp_path / "a.zarr", "spacing", "correct its metadata")
+
+
+# HDF5 and TIFF ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ("a.nxs", "a.nc", "a.he5", "a"))
+def test_hdf5_is_known_by_its_bytes(tmp_path, name):
+    with h5py.File(tmp_path / name, "w") as file:
+        file["entry/data/data"] = ramp("u2")
+    refused(tmp_path / name, "is an HDF5 file", "save the volume as")
+
+
+def big_data_viewer(path, data, told):
+    with h5py.File(path, "w") as file:
+        file["s00/resolutions"] = numpy.ones((1, 3))
+        file["s00/subdivisions"] = numpy.array([[6, 4, 2]], "i4")
+        file.create_dataset("t00000/s00/0/cells", data=data, chunks=(2, 4, 6))
+        if told:
+            file["s00"].attrs["dataType"] = told
+
+
+@pytest.mark.parametrize("stored, told, meant", (
+    ("i2", None, "u2"), ("i2", "int16", "i2"), ("i2", "uint16", "u2"), ("u2", "uint16", "u2"), ("u2", None, "u2"), ("i1", "uint8", "u1"),
+    ("i1", None, "i1"), ("f4", "float32", "f4")))
+def test_big_data_viewers_own_type_tells_the_sign(tmp_path, stored, told, meant):
+    data = (ramp("i4") - 100).astype(stored)
+    big_data_viewer(tmp_path / "a.h5", data, told)
+    store = palpate.open_store(tmp_path / "a.h5")
+    assert numpy.array_equal(store.read((0, 0, 0), store.levels[0].size).array, data.view(meant).astype("f4"))
+
+
+@pytest.mark.parametrize("planes", ("contig", "separate"))
+def test_several_values_in_each_pixel_are_not_called_colours(tmp_path, planes):
+    data = numpy.moveaxis(ramp("u2"), 0, -1).copy() if planes == "contig" else ramp("u2")
+    tifffile.imwrite(tmp_path / "a.tif", data, photometric="minisblack", planarconfig=planes, metadata=None)
+    refused(tmp_path / "a.tif", "5 values in each pixel", "as a page")
