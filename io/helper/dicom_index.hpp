@@ -1,5 +1,4 @@
-// The index of a folder of DICOM files (DICOMDIR, PS3.3 annex F), which
-// lists them.
+// The index of a folder of DICOM files (DICOMDIR, PS3.3 annex F), which lists them.
 #pragma once
 
 #include <filesystem>
@@ -8,9 +7,8 @@
 
 namespace palpate::io {
 
-/// The images that `index` lists and that are none of `files`, as it names them. None if it lists no
-/// image at all that is there: the files have other names now. After slices_from(index), which
-/// checks the file.
+/// The images that `index` lists and that are none of `files`, as it names them. None if it lists
+/// no image at all that is there, because the files have other names now, or if it cannot be read.
 std::vector<std::string> images_missing(const std::filesystem::path& index,
                                         const std::vector<std::filesystem::path>& files);
 

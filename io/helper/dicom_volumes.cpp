@@ -365,7 +365,6 @@ void check_others(const std::vector<fs::path>& slices, const std::vector<fs::pat
 void note_missing_images(const std::vector<fs::path>& files, std::vector<std::string>& notes) {
     for (const fs::path& file : files) {
         if (!is_dicom_index(file)) continue;
-        const MemoryBound bound(8 * fs::file_size(file));
         const auto missing = images_missing(file, files);
         if (missing.empty()) continue;
         notes.push_back(

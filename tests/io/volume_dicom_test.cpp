@@ -252,7 +252,7 @@ TEST(dicom, several_slices_at_each_place_are_time_steps) {
         EXPECT_EQ(file.volume.sample({0, 0, 2}), 100 * (4 * step + 2));
     }
     std::filesystem::remove(folder / name_of_slice(5));
-    EXPECT_TRUE(contains(refusal(folder.path()), "same place"));
+    EXPECT_TRUE(contains(refusal(folder.path()), "has 3 DICOM series"));
 }
 
 TEST(dicom, slices_without_a_position_are_piled_up_by_number_and_that_is_said) {
