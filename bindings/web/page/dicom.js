@@ -15,13 +15,13 @@ const tags = {
   storage: "00080016", imageType: "00080008", modality: "00080060", description: "0008103e", seriesNumber: "00200011", series: "0020000e",
   echoTime: "00180081", echo: "00180086", bValue: "00189087", between: "00180088", thickness: "00180050", position: "00200032", orientation: "00200037",
   samples: "00280002", colours: "00280004", frames: "00280008", rows: "00280010", columns: "00280011", spacing: "00280030", allocated: "00280100",
-  aspect: "00280034", stack: "00209056", frameType: "00089007", frameEcho: "00189082", stored: "00280101", highBit: "00280102", signed: "00280103", intercept: "00281052", slope: "00281053", pixels: "7fe00010",
+  aspect: "00280034", stack: "00209056", frameType: "00089007", frameEcho: "00189082", stored: "00280101", highBit: "00280102", signed: "00280103", intercept: "00281052", slope: "00281053", units: "00281054", pixels: "7fe00010",
   shared: "52009229", each: "52009230",
 };
 /** Functional groups of frames, and what of them is taken. */
 const macros = {
   "00289110": [tags.spacing, tags.between, tags.thickness], "00209113": [tags.position], "00209116": [tags.orientation],
-  "00289145": [tags.intercept, tags.slope], "00209111": [tags.stack], "00189114": [tags.frameEcho], "00189117": [tags.bValue],
+  "00289145": [tags.intercept, tags.slope, tags.units], "00209111": [tags.stack], "00189114": [tags.frameEcho], "00189117": [tags.bValue],
   "00189226": [tags.frameType], "00189329": [tags.frameType], "00189732": [tags.frameType], "00189504": [tags.frameType], "00409092": [tags.frameType], "00189806": [tags.frameType],
 };
 const unread = {
@@ -153,12 +153,19 @@ class Header {
   }
 }
 
+/** Siemens and United Imaging pack a whole volume into one flat image. Enhanced files of Siemens keep the mark. */
+function isMosaic(header, count) {
+  if (count > 1) return false;
+  if (/MOSAIC|VFRAME/.test(header.text(tags.imageType))) return true;
+  if (header.text("00190010") === "SIEMENS MR HEADER" && header.set.get("0019100a")?.length === 2) return header.whole("0019100a") > 1;
+  return header.text("00650010") === "Image Private Header" && Number(header.text("00651050")) > 1;
+}
+
 /** How pixels are stored: one value of 8 or 16 bits each. */
 function formatOf(header, pixelKind) {
   for (const [tag, what] of Object.entries(unread)) if (header.set.has(tag)) refuse(`${what} (element ${tag}) is not read in the browser`);
   const colours = header.text(tags.colours);
   if (header.whole(tags.samples, 1) !== 1 || !["", "MONOCHROME1", "MONOCHROME2"].includes(colours)) refuse(`DICOM in colours (${colours}) is not read`, "give a series with one value per sample");
-  if (header.text(tags.imageType).includes("MOSAIC")) refuse("a MOSAIC of slices is not read", "convert it to NIfTI first, for example with dcm2niix");
   const bits = header.whole(tags.allocated);
   const format = { rows: header.whole(tags.rows), columns: header.whole(tags.columns), bits, stored: header.whole(tags.stored, bits), signed: header.whole(tags.signed, 0) === 1 };
   const { rows, columns, stored } = format;
@@ -178,8 +185,8 @@ function framesIn(header) {
 /** The header that holds for each frame. */
 function headersOf(header, count) {
   const [shared] = header.items(tags.shared);
-  const each = header.items(tags.each);
-  if (each.length === 0 && count === 1) return [header];
+  const told = header.items(tags.each);
+  const each = told.length === 0 && count === 1 ? [new Map()] : told;
   if (each.length === 0) refuse(`its ${count} frames do not say where they lie: they may be moments (FrameIncrementPointer), or slices by SliceVector`);
   if (each.length !== count) refuse(`it has ${count} frames, and describes ${each.length}`, again);
   return each.map((group) => {
@@ -210,6 +217,7 @@ function framesOf({ header, pixelKind }) {
   if (!header.set.has(tags.pixels)) refuse("it has no pixels, but says how large its image is: it is cut off", `${again}, or leave it out`);
   const format = formatOf(header, pixelKind);
   const count = framesIn(header);
+  if (isMosaic(header, count)) refuse("a MOSAIC of slices is not read", "convert it to NIfTI first, for example with dcm2niix");
   const pixels = header.set.get(tags.pixels);
   const expected = countOf([count, format.size]);
   if (pixels.length !== expected && pixels.length !== expected + (expected % 2)) refuse(`it has ${pixels.length} bytes of pixels in place of ${expected}`, again);
@@ -224,7 +232,7 @@ function framesOf({ header, pixelKind }) {
       ...format, pixels: pixels.subarray(i * format.size, (i + 1) * format.size), spacing, position: one.numbers(tags.position, 3),
       orientation: unitVectors(one.numbers(tags.orientation, 6)), thickness: between > 0 ? between : one.numbers(tags.thickness, 1)?.[0],
       slope: one.numbers(tags.slope, 1)?.[0], intercept: one.numbers(tags.intercept, 1)?.[0] ?? 0, modality: one.text(tags.modality),
-      isRescaled: one.has(tags.slope) && one.has(tags.intercept),
+      isRescaled: one.has(tags.slope) && one.has(tags.intercept), units: one.text(tags.units),
       aspect: one.numbers(tags.aspect, 2), isInverse: one.text(tags.colours) === "MONOCHROME1",
       label: one.text(tags.description) || one.text(tags.seriesNumber) || one.text(tags.series),
       key: [
@@ -343,12 +351,13 @@ export async function readDicom(files) {
   const { slices, directions, gap } = stacked(frames, notes);
   const { rows, columns, orientation, position: place, modality, label } = slices[0];
   const spacing = spacingOf(slices[0]);
+  const isHounsfield = modality === "CT" && slices.every((one) => one.isRescaled && ["", "HU"].includes(one.units));
   if (label) notes.push(`series '${label}'`);
   const values = new Float32Array(countOf([columns, rows, slices.length]));
   slices.forEach((slice, i) => valuesOf(slice, values.subarray(i * rows * columns, (i + 1) * rows * columns)));
   const axes = [spacing[1], spacing[0], gap].map((step, a) => directions[a].map((x) => x * step));
   return {
     samples: typed(values, slices), geometry: geometryOf([columns, rows, slices.length], axes, (orientation && place) ?? [0, 0, 0]), oriented: orientation !== undefined, notes,
-    marks: modality === "CT" ? { skin: -300, bone: 250 } : undefined, // [HU] docs/isovalue.md
+    marks: isHounsfield ? { skin: -300, bone: 250 } : undefined, // [HU] docs/isovalue.md
   };
 }

@@ -14,6 +14,7 @@ from pathlib import Path
 import numcodecs
 import numpy as np
 import zarr
+from pydicom import dcmread
 from pydicom.dataset import Dataset, FileDataset, FileMetaDataset
 from pydicom.sequence import Sequence
 from pydicom.uid import ExplicitVRBigEndian, ExplicitVRLittleEndian, ImplicitVRLittleEndian, JPEGLosslessSV1, generate_uid
@@ -350,6 +351,21 @@ def grouped(folder, count=4, private=False, stacks=None, echoes=None):
     slices(folder, NumberOfFrames=4, PixelData=pixels(VALUES), PerFrameFunctionalGroupsSequence=Sequence(groups), ImagePositionPatient="absent")
 
 
+def shared_only(folder):
+    """A frame described by what all frames share."""
+    group = sequence(PixelMeasuresSequence=sequence(PixelSpacing=[3, 2]), PixelValueTransformationSequence=sequence(RescaleSlope=2, RescaleIntercept=-5))
+    slices(folder, SharedFunctionalGroupsSequence=group)
+
+
+def siemens_mosaic(folder):
+    """Told by a private element, without the word."""
+    slices(folder)
+    one = dcmread(folder / "0.dcm")
+    one.add_new((0x0019, 0x0010), "LO", "SIEMENS MR HEADER")
+    one.add_new((0x0019, 0x100a), "US", 4)
+    one.save_as(folder / "0.dcm")
+
+
 def beside(folder, name, content, bare=False):
     """Slices, and another file of such a name."""
     slices(folder, 3)
@@ -397,7 +413,8 @@ SAME_DICOM = {
     "unplaced": lambda at: slices(at, ImagePositionPatient=None), "reported": reported, "no_frames": lambda at: slices(at, NumberOfFrames=0),
     "aspect": lambda at: slices(at, 3, PixelSpacing="absent", PixelAspectRatio=[3, 2]), "bytes": lambda at: slices(at, BitsAllocated=8, BitsStored=8, HighBit=7, PixelData=bytes(range(30))),
     "wide": lambda at: slices(at, BitsStored=16, HighBit=15, values=VALUES * 200), "small": lambda at: slices(at, 3, RescaleSlope=1, RescaleIntercept=1),
-    "stack": lambda at: grouped(at, stacks="1111"), "lacking": lambda at: slices(at, 4, lambda k: {"RescaleSlope": 2, **({} if k == 1 else {"RescaleIntercept": -5})}),
+    "stack": lambda at: grouped(at, stacks="1111"), "shared": shared_only, "units": lambda at: slices(at, RescaleSlope=2, RescaleIntercept=0, RescaleType="US"),
+    "lacking": lambda at: slices(at, 4, lambda k: {"RescaleSlope": 2, **({} if k == 1 else {"RescaleIntercept": -5})}),
 }
 REFUSED_DICOM = {
     "cut": ("no pixels", lambda at: damaged(at, cut)), "pixels_twice": ("twice", lambda at: damaged(at, twice)), "bare": ("DICM", lambda at: damaged(at, lambda data: data[132:])),
@@ -405,7 +422,8 @@ REFUSED_DICOM = {
     "high": ("HighBit", lambda at: slices(at, HighBit=15)), "table": ("Modality LUT", lambda at: slices(at, ModalityLUTSequence=sequence(LUTDescriptor=[4, 0, 16], ModalityLUTType="US", LUTData=b"\0" * 8))),
     "dose": ("DoseGridScaling", lambda at: slices(at, DoseGridScaling="0.001")), "few_groups": ("describes 2", lambda at: grouped(at, 2)),
     "moments": ("where they lie", lambda at: slices(at, FrameIncrementPointer=0x00181063, FrameTime=40, **TIMES)), "vector": ("where they lie", lambda at: slices(at, FrameIncrementPointer=0x00540080, SliceVector=[2, 1, 3, 4], **TIMES)),
-    "mosaic": ("MOSAIC", lambda at: slices(at, ImageType=["ORIGINAL", "PRIMARY", "M", "MOSAIC"])), "palette": ("PALETTE", lambda at: slices(at, PhotometricInterpretation="PALETTE COLOR")),
+    "mosaic": ("MOSAIC", lambda at: slices(at, ImageType=["ORIGINAL", "PRIMARY", "M", "MOSAIC"])), "vframe": ("MOSAIC", lambda at: slices(at, ImageType=["ORIGINAL", "PRIMARY", "VFRAME"])),
+    "packed": ("MOSAIC", siemens_mosaic), "palette": ("PALETTE", lambda at: slices(at, PhotometricInterpretation="PALETTE COLOR")),
     "two_series": ("2 series", lambda at: slices(at, 2, lambda k: {"SeriesInstanceUID": f"1.2.{k + 3}"})), "localizer": ("LOCALIZER", lambda at: slices(at, 3, lambda k: {"ImageType": ["ORIGINAL", "PRIMARY", "AXIAL" if k else "LOCALIZER"]})),
     "stacks": ("2 series", lambda at: grouped(at, stacks="1122")), "frame_echoes": ("2 series", lambda at: grouped(at, echoes="1122")),
     "one_place": ("several at one place", lambda at: slices(at, 3, lambda k: {"ImagePositionPatient": [-10, 20 + 0.01 * k, 30]})), "tiles": ("tiles", lambda at: slices(at, TotalPixelMatrixColumns=600)),

@@ -46,6 +46,7 @@ test("DICOM series in every order of bytes and frames of one file are one volume
   assert.deepEqual(series.marks, { skin: -300, bone: 250 });
   assert.equal(series.name, "implicit");
   for (const other of ["big", "frames.dcm"]) sameVolume(await open(other), series);
+  assert.deepEqual((await Promise.all(["empty", "units", "shared"].map(open))).map(({ marks }) => marks?.bone), [undefined, undefined, 250]);
   const halves = await open("explicit");
   assert.deepEqual(halves.samples, Float32Array.from({ length: 120 }, (_, i) => 0.5 * ((i * 7) % 251) - 100));
 });
