@@ -12,6 +12,7 @@
 #include "palpate/io/error.hpp"
 #include "palpate/io/sequence.hpp"
 #include "palpate/stream/read_files.hpp"
+#include "stream/formats/codecs.hpp"
 #include "stream/formats/content.hpp"
 #include "stream/formats/stores.hpp"
 #include "stream/objects/held_folder.hpp"
@@ -49,6 +50,19 @@ fs::path placed(const fs::path& path) {
     return error ? whole : folder / whole.filename();
 }
 
+/// Of all members but those about the place of the original, which a person may correct.
+std::uint32_t note_checksum(Json note) {
+    for (const char* of_place : {"checksum", "of", "beside", "secrets"}) note.erase(of_place);
+    const std::string text = note.dump();
+    return crc32c_of(std::as_bytes(std::span(text)));
+}
+
+/// A chunk, as a path from the folder.
+fs::path place_of(std::size_t level, const Index3& chunk) {
+    return fs::path(std::to_string(level)) / "c" / std::to_string(chunk[2]) /
+           std::to_string(chunk[1]) / std::to_string(chunk[0]);
+}
+
 Json json_of(const EditsNote& note, const fs::path& out) {
     const StoreOptions& options = note.of.options;
     const std::string kept = io::address_to_keep(note.of.address);
@@ -81,12 +95,17 @@ Json json_of(const EditsNote& note, const fs::path& out) {
         }
         json["chunks"].push_back(std::move(chunks));
     }
+    json["checksum"] = note_checksum(json);
     return json;
 }
 
 /// `folder`: where the note lies. What does not come from the note is as `options` say.
 EditsNote note_from(const Json& json, const fs::path& folder, const StoreOptions& options) {
     EditsNote note;
+    note.is_whole = json.contains("checksum");
+    if (note.is_whole && json["checksum"] != note_checksum(json)) {
+        throw std::invalid_argument("does not have its checksum");
+    }
     note.of = {io::path_from_json(json.at("of")).string(), options};
     note.content = json.value("content", std::string());
     note.chunk = json.value("chunk", note.chunk);
@@ -140,6 +159,20 @@ EditsNote read_note(const fs::path& folder, const StoreOptions& options) {
     } catch (const std::exception&) {  // of the library, or above
         throw io::InputError(path.string() +
                              ": is damaged; without it the edits are of no known volume");
+    }
+}
+
+/// A chunk that is gone would count as one of zeros. Earlier versions did not store those.
+void check_stored(const EditsNote& note, const fs::path& folder) {
+    std::error_code error;
+    for (std::size_t l = 0; note.is_whole && l < note.chunks.size(); ++l) {
+        for (const Index3& chunk : note.chunks[l]) {
+            const fs::path file = folder / place_of(l, chunk);
+            if (fs::is_regular_file(file, error)) continue;
+            throw io::InputError(file.string() +
+                                 ": is not there, so that an edit is missing; copy the folder "
+                                 "again");
+        }
     }
 }
 
@@ -290,6 +323,7 @@ std::shared_ptr<const Store> open_with_original(const std::stop_token& stop,
 std::shared_ptr<const Store> open_edits(const std::stop_token& stop, const std::string& folder,
                                         const StoreOptions& options) {
     EditsNote note = read_note(folder, options);
+    check_stored(note, folder);
     if (note.beside.empty()) return open_with_original(stop, folder, std::move(note));
     EditsNote moved = note;
     moved.of.address = note.beside;

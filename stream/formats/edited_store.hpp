@@ -21,6 +21,7 @@ struct EditsNote {
     std::string content = {};           ///< of the original: content_of(); empty: not known
     std::string beside = {};            ///< where the original is if it was moved with the edits
     bool lacks_secrets = false;         ///< its address was saved without password and query
+    bool is_whole = false;              ///< all these chunks are stored, also those that are 0
 };
 
 /// The levels of the original from the edited one on.

@@ -140,14 +140,26 @@ struct Scan {
     }
 };
 
+/// After a power cut, a file may have its name and size without its bytes. Nothing but zeros is
+/// nobody's data.
+bool is_without_bytes(int file) {
+    std::array<char, 4096> part{};
+    for (std::uint64_t at = 0;; at += part.size()) {
+        const std::ptrdiff_t got = io::read_at(file, part.data(), part.size(), at);
+        if (got < 0 || std::any_of(part.begin(), part.begin() + got, [](char c) { return c != 0; }))
+            return false;
+        if (got < std::ssize(part)) return true;
+    }
+}
+
 /// Removes an entry, unless it does not begin as one does.
 void remove_entry(const fs::path& path) {
     const io::Descriptor file(io::open_file_in(AT_FDCWD, path.string()));
+    if (file.number() < 0) return;
     EntryHead head;
-    if (read_all(file.number(), &head.magic, sizeof head.magic, 0) &&
-        head.magic == EntryHead{}.magic) {
-        ::unlink(path.c_str());
-    }
+    const bool is_own = read_all(file.number(), &head.magic, sizeof head.magic, 0) &&
+                        head.magic == EntryHead{}.magic;
+    if (is_own || is_without_bytes(file.number())) ::unlink(path.c_str());
 }
 
 }  // namespace
@@ -228,6 +240,8 @@ void DiskCache::write(const std::string& name, const Bytes& bytes) const {
     const bool whole = io::write_all(file.number(), as_text(&head, 1)) &&
                        io::write_all(file.number(), name) &&
                        io::write_all(file.number(), as_text(bytes.data(), bytes.size()));
+    // Not synced, which would take longer than the request did: find() knows a whole entry by its
+    // checksum.
     if (whole) fs::rename(temporary, path, error);
     if (!whole || error) ::unlink(temporary.c_str());
 }

@@ -15,8 +15,10 @@
 namespace palpate::stream {
 
 /// An entry is a file with its name, its bytes and their checksum, written under another name and
-/// then renamed. A damaged one is removed when it is met. When the folder is nearly full, those
-/// that were not used for the longest time go. Other files in the folder are left alone.
+/// then renamed. It is not synced: after a power cut its bytes may be missing, which the checksum
+/// tells each time it is read. A damaged one is removed when it is met. When the folder is nearly
+/// full, those that were not used for the longest time go. Other files in the folder are left
+/// alone, except for files in an entry's place that hold nothing but zeros.
 class DiskCache {
   public:
     /// If the folder has more than `most_bytes`, a thread removes the oldest entries.

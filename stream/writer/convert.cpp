@@ -42,7 +42,7 @@ nlohmann::json source_of(const Store& from, int level, const std::stop_token& st
 /// All that decides what is written: a run is continued by one of the same job only.
 nlohmann::json job_of(const Store& from, int level, const ConvertOptions& options,
                       nlohmann::json source) {
-    nlohmann::json job = {{"version", 1},  // of what is computed and how it is written
+    nlohmann::json job = {{"version", 2},  // of what is computed and how it is written
                           {"source", io::json_of_path(io::address_to_keep(from.info().address))},
                           {"level", level},
                           {"zarr", options.zarr_version},

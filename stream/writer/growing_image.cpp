@@ -48,6 +48,12 @@ Json compressor2(Compression compression, std::size_t each) {
             {"blocksize", 0}};
 }
 
+/// gzip has a checksum of its own, and zstd can have one. Zarr 2 has none for the others.
+bool needs_checksum(const ConvertOptions& options) {
+    return options.zarr_version == 3 &&
+           (options.compression == Compression::none || options.compression == Compression::blosc);
+}
+
 Json codecs3(Compression compression, std::size_t each) {
     Json codecs = {{{"name", "bytes"}, {"configuration", {{"endian", "little"}}}}};
     Json how;
@@ -68,6 +74,10 @@ Json codecs3(Compression compression, std::size_t each) {
     return codecs;
 }
 
+bool is_zero(std::span<const std::byte> bytes) {
+    return std::ranges::all_of(bytes, [](std::byte b) { return b == std::byte{0}; });
+}
+
 Json array2(const Geometry& grid, SampleType type, const ConvertOptions& options) {
     const char* const dtype = type == SampleType::uint8    ? "|u1"
                               : type == SampleType::int16  ? "<i2"
@@ -85,6 +95,8 @@ Json array2(const Geometry& grid, SampleType type, const ConvertOptions& options
 }
 
 Json array3(const Geometry& grid, SampleType type, const ConvertOptions& options) {
+    Json codecs = codecs3(options.compression, size_of(type));
+    if (needs_checksum(options)) codecs.push_back({{"name", "crc32c"}});
     return {{"zarr_format", 3},
             {"node_type", "array"},
             {"shape", slowest_first(grid.size)},
@@ -94,7 +106,7 @@ Json array3(const Geometry& grid, SampleType type, const ConvertOptions& options
               {"configuration", {{"chunk_shape", Json(std::vector<int>(3, options.chunk))}}}}},
             {"chunk_key_encoding", {{"name", "default"}, {"configuration", {{"separator", "/"}}}}},
             {"fill_value", 0},
-            {"codecs", codecs3(options.compression, size_of(type))},
+            {"codecs", codecs},
             {"dimension_names", {"z", "y", "x"}},
             {"attributes", Json::object()}};
 }
@@ -167,15 +179,24 @@ struct GrowingImage::Parts {
     Bytes packed(const Bytes& samples) const {
         switch (options.compression) {
             case Compression::none:
-                break;
+                return checked(samples);
             case Compression::gzip:
                 return packed_gzip(samples, gzip_level);
             case Compression::zstd:
                 return packed_zstd(samples, zstd_level);
             case Compression::blosc:
-                return packed_blosc(samples, size_of(type), blosc_level);
+                break;
         }
-        return samples;
+        return checked(packed_blosc(samples, size_of(type), blosc_level));
+    }
+
+    Bytes checked(Bytes bytes) const {
+        if (!needs_checksum(options)) return bytes;
+        const std::uint32_t sum = crc32c_of(bytes);
+        for (int shift = 0; shift < 32; shift += 8) {
+            bytes.push_back(static_cast<std::byte>(sum >> shift & 0xff));
+        }
+        return bytes;
     }
 
     /// A chunk with what lies outside the grid.
@@ -290,12 +311,13 @@ std::uint64_t GrowingImage::stored_chunks() const {
     return count;
 }
 
-bool GrowingImage::write(int level, const Index3& chunk, std::span<const std::byte> samples) const {
+bool GrowingImage::write(int level, const Index3& chunk, std::span<const std::byte> samples,
+                         bool zeros) const {
     const SampleBox part = box(level, chunk);
     if (part.empty() || samples.size() != bytes_of(part, parts_->type)) {
         throw std::invalid_argument("these are not the samples of this chunk");
     }
-    if (std::ranges::all_of(samples, [](std::byte b) { return b == std::byte{0}; })) return false;
+    if (!zeros && is_zero(samples)) return false;
     const SampleBox whole = parts_->whole(chunk);
     Bytes all(bytes_of(whole, parts_->type));
     copy_box(part, samples.data(), whole, all.data(), size_of(parts_->type));
@@ -311,7 +333,8 @@ bool GrowingImage::write(int level, const Index3& chunk, std::span<const std::by
 
 std::optional<Bytes> GrowingImage::written(int level, const Index3& chunk) const {
     const auto all = parts_->stored(level, chunk);
-    if (!all) return std::nullopt;
+    // After a power cut, a file without its bytes may remain, and zeros are not stored otherwise.
+    if (!all || is_zero(*all)) return std::nullopt;
     const SampleBox part = box(level, chunk);
     Bytes samples(bytes_of(part, parts_->type));
     copy_box(parts_->whole(chunk), all->data(), part, samples.data(), size_of(parts_->type));

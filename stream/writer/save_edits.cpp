@@ -118,7 +118,7 @@ class Saving {
                 const Bytes now = level == 0 ? edited(part) : means(level, part);
                 copy_box(part, now.data(), box, samples.data(), size_of(type()));
             }
-            image_.write(static_cast<int>(level), chunk, samples);
+            image_.write(static_cast<int>(level), chunk, samples, true);
             note_.chunks[level].insert(chunk);
             ++done;
             if (level == 0) made_ = double(done) / double(parts.size());

@@ -1,5 +1,8 @@
 """Whatever is renamed into its place is on the disk before, and its new name afterwards. A file that is written under its own name is
-on the disk at the end. strace watches the programs, so that no writer has to be named: every file under the test's folder counts."""
+on the disk at the end. strace watches the programs, so that no writer has to be named: every file under the test's folder counts.
+
+The disk cache (--cache) is the one exception, and outside of these folders. Losing an entry loses nothing, and syncing each would take
+longer than its request. tests/stream/disk_cache_test.cpp shows that an entry whose bytes did not reach the disk is never returned."""
 
 import os
 import re

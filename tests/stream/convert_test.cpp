@@ -201,6 +201,46 @@ TEST(Convert, keeps_complete_chunks_of_the_same_work_only) {
     expect_same_boxes(*open_store(folder / "v.zarr"), volume, 9);
 }
 
+TEST(Convert, writes_chunks_again_whose_bytes_did_not_reach_the_disk) {
+    const ScratchFolder folder;
+    const Volume volume = some_volume(SampleType::uint16, 11);
+    const auto store = store_of(volume, "v");
+    int number = 0;
+    for (const int version : {2, 3}) {
+        for (const Compression compression :
+             {Compression::none, Compression::gzip, Compression::zstd, Compression::blosc}) {
+            const fs::path out = folder / (std::to_string(number++) + ".zarr");
+            ConvertOptions options;
+            options.zarr_version = version;
+            options.compression = compression;
+            options.chunk = 16;
+            const auto interrupted = [&] {
+                ConvertOptions stopping = options;
+                stopping.progress = [](double part) {
+                    if (part == 1) throw Stop{};
+                };
+                EXPECT_THROW((void)convert_to_zarr(*store, 0, out, stopping), Stop);
+            };
+            interrupted();
+            const fs::path chunk =
+                out.string() + ".partial/result/0/" + (version == 2 ? "0/1/0" : "c/0/1/0");
+            const std::string good = bytes_of(chunk);
+            const auto lose = [&](std::string bad) {
+                put_bytes(chunk, bad);
+                interrupted();
+                EXPECT_EQ(bytes_of(chunk), good) << out;
+            };
+            lose("");
+            lose(good.substr(0, good.size() / 2));
+            lose(std::string(good.size(), '\0'));
+            if (version == 3) lose(good.substr(0, good.size() - 9) + std::string(9, '\0'));
+            const Converted converted = convert_to_zarr(*store, 0, out, options);
+            EXPECT_EQ(converted.kept, converted.chunks);
+            expect_same_boxes(*open_store(out), volume, 3);
+        }
+    }
+}
+
 TEST(Convert, a_source_that_changes_meanwhile_gives_no_result) {
     const ScratchFolder folder;
     const Volume old_volume = some_volume(SampleType::uint8, 8);

@@ -5,8 +5,10 @@
 #include <dlfcn.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <functional>
 
 #include "stream/store_support.hpp"
 #include "support/eventually.hpp"
@@ -106,6 +108,59 @@ TEST(DiskCache, a_lower_bound_acts_at_once_and_the_newest_entries_stay) {
     };
     EXPECT_TRUE(support::comes_true(is_small));
     EXPECT_TRUE(small.find("newest"));
+}
+
+/// The one entry of a cache.
+fs::path only_entry(const fs::path& cache) {
+    for (const auto& entry : fs::recursive_directory_iterator(cache)) {
+        if (entry.is_regular_file()) return entry.path();
+    }
+    return {};
+}
+
+TEST(DiskCache, an_entry_whose_bytes_did_not_reach_the_disk_is_never_returned) {
+    const ScratchFolder folder;
+    const DiskCache cache(folder.path(), 400'000);
+    Bytes bytes(20'000);
+    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::byte>(i * 7 + 1);
+    const std::size_t page = 4096;
+    const auto after_power_cut = [&](const std::function<void(std::string&)>& lose) {
+        cache.put("piece", bytes);
+        const fs::path entry = only_entry(folder.path());
+        std::string held = support::bytes_of(entry);
+        lose(held);
+        put_bytes(entry, held);
+        EXPECT_FALSE(cache.find("piece"));
+        EXPECT_FALSE(fs::exists(entry)) << "it takes room for ever";
+    };
+    for (std::size_t at = 0; at < bytes.size(); at += page) {
+        after_power_cut([&](std::string& held) { held.resize(at); });
+        if (at == 0) continue;  // without its beginning, a file is nobody's entry
+        after_power_cut([&](std::string& held) {
+            std::fill_n(held.begin() + static_cast<std::ptrdiff_t>(at),
+                        std::min(page, held.size() - at), '\0');
+        });
+    }
+    after_power_cut([](std::string& held) { std::ranges::fill(held, '\0'); });
+    cache.put("piece", bytes);
+    EXPECT_EQ(cache.find("piece"), bytes);
+}
+
+TEST(DiskCache, entries_of_zeros_go_like_others_when_it_is_full) {
+    const ScratchFolder folder;
+    constexpr std::uint64_t bound = 400'000;
+    const DiskCache cache(folder.path(), bound);
+    const auto put = [&](int first, int end) {
+        for (int i = first; i < end; ++i) cache.put("piece " + std::to_string(i), Bytes(40'000));
+    };
+    put(0, 8);
+    for (const auto& entry : fs::recursive_directory_iterator(folder.path())) {
+        if (!entry.is_regular_file()) continue;
+        put_bytes(entry.path(), std::string(entry.file_size(), '\0'));
+        fs::last_write_time(entry, fs::file_time_type::clock::now() - 1h);
+    }
+    put(8, 40);
+    EXPECT_LE(bytes_in(folder.path()), bound);
 }
 
 }  // namespace

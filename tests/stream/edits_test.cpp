@@ -5,6 +5,8 @@
 
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "palpate/io/error.hpp"
 #include "palpate/stream/convert.hpp"
@@ -286,6 +288,88 @@ TEST(Edits, damaged_notes_are_refused_in_one_line) {
         }
     }
     EXPECT_GT(refused, 100);
+}
+
+/// All that a store says and holds.
+std::string all_of(const Store& store) {
+    std::ostringstream all;
+    const StoreInfo& info = store.info();
+    all << name_of(info.type) << info.range->minimum << ' ' << info.range->maximum << ' '
+        << info.fill;
+    for (std::size_t l = 0; l < info.levels.size(); ++l) {
+        const Geometry& grid = info.levels[l].geometry;
+        all << grid.size.transpose() << grid.spacing.transpose() << grid.origin.transpose()
+            << grid.direction << grid.oriented << grid.measured;
+        const auto samples = read_box(store, static_cast<int>(l), whole_box(grid));
+        all.write(reinterpret_cast<const char*>(samples.data()),
+                  static_cast<std::streamsize>(samples.size()));
+    }
+    return all.str();
+}
+
+/// The same of the folder, or why it is refused.
+std::string opened_or_refused(const fs::path& folder) {
+    try {
+        return all_of(*open_store(folder.string()));
+    } catch (const io::InputError& e) {
+        EXPECT_TRUE(io::test::one_line_about(e.what(), folder) ||
+                    support::contains(e.what(), folder.string() + "/"))
+            << e.what();
+        return "refused";
+    }
+}
+
+TEST(Edits, of_which_a_bit_has_turned_or_a_chunk_is_missing_are_refused_by_name) {
+    Case c(SampleType::int16, 21);
+    const auto original = open_store(c.zarr.string());
+    // One chunk becomes 0.
+    auto edits = c.some_edits(*original, 0);
+    edits =
+        edited(edits, edit::Fill{{{0, 0, 0}, {63, 63, 63}}, 0}, reader_of(*original, 0)).samples;
+    save_edits(*original, {c.zarr.string(), {}}, 0, *edits, c.out, {});
+    const std::string right = opened_or_refused(c.out);
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::recursive_directory_iterator(c.out)) {
+        if (entry.is_regular_file()) files.push_back(entry.path());
+    }
+    ASSERT_GT(files.size(), 6U);
+    int refused = 0, tried = 0;
+    for (const fs::path& file : files) {
+        const std::string good = support::bytes_of(file);
+        for (int i = 0; i < 12; ++i) {
+            std::string bad = good;
+            char& byte = bad[static_cast<std::size_t>(c.random.below(int(bad.size())))];
+            byte = static_cast<char>(byte ^ (1 << c.random.below(8)));
+            support::put_bytes(file, bad);
+            const std::string now = opened_or_refused(c.out);
+            refused += now == "refused";
+            ++tried;
+            // White space, members that change nothing, and bits that zstd does not use.
+            EXPECT_TRUE(now == "refused" || now == right) << file;
+        }
+        if (file.filename() != "palpate-edits.json") {  // without it, it is an image of its own
+            fs::remove(file);
+            EXPECT_EQ(opened_or_refused(c.out), "refused") << file;
+        }
+        support::put_bytes(file, good);
+    }
+    EXPECT_GT(refused, tried / 2);
+    EXPECT_EQ(opened_or_refused(c.out), right);
+}
+
+TEST(Edits, of_earlier_versions_open_without_a_checksum_and_without_chunks_of_zeros) {
+    Case c(SampleType::uint8, 22);
+    const auto original = open_store(c.zarr.string());
+    const edit::Fill zeros{{{0, 0, 0}, {63, 63, 63}}, 0};
+    auto plain = edited(samples_of(c.volume), zeros).samples;
+    const auto edits =
+        edited(empty_samples(*original, c.volume, 0), zeros, reader_of(*original, 0));
+    save_edits(*original, {c.zarr.string(), {}}, 0, *edits.samples, c.out, {});
+    auto note = nlohmann::json::parse(support::bytes_of(c.out / "palpate-edits.json"));
+    ASSERT_EQ(note.erase("checksum"), 1U);
+    support::put_bytes(c.out / "palpate-edits.json", note.dump(1));
+    ASSERT_TRUE(fs::remove(c.out / "0/c/0/0/0"));
+    EXPECT_TRUE(same_bits(volume_of(*open_store(c.out.string())), flattened(*plain)));
 }
 
 }  // namespace

@@ -39,10 +39,11 @@ void check_zarr_place(const std::filesystem::path& out);
 /// with the smaller spacing, until one chunk holds the whole. Works in OUT.partial, whose result
 /// becomes OUT when all is written and on the disk. Each chunk is read back and compared when it is
 /// written. The next run with the same content of the source and the same options continues an
-/// interrupted run. It keeps complete chunks, which it recognises by their checksum or by unpacking
-/// them. Any other run begins anew. OUT must not exist. If OUT.partial exists, it must be of such a
-/// run. Throws io::OutputError, std::invalid_argument for options, and passes on exceptions of the
-/// store.
+/// interrupted run. It keeps complete chunks, which it recognises by their checksum. (Zarr 2 has
+/// none for blosc and for chunks without compression. There, a chunk is complete if it unpacks and
+/// is not all zeros.) Any other run begins anew. OUT must not exist. If OUT.partial exists, it must
+/// be of such a run. Throws io::OutputError, std::invalid_argument for options, and passes on
+/// exceptions of the store.
 Converted convert_to_zarr(const Store& from, int level, const std::filesystem::path& out,
                           const ConvertOptions& options);
 

@@ -45,8 +45,9 @@ class GrowingImage {
     /// level, if it is known. Throws io::OutputError, like all functions here that write.
     void write_metadata(const std::optional<Range>& range) const;
     /// The samples of box(level, chunk), x fastest. Read back and compared. False: all are 0, and
-    /// the chunk is not stored.
-    bool write(int level, const Index3& chunk, std::span<const std::byte> samples) const;
+    /// the chunk is not stored, unless `zeros` asks for that.
+    bool write(int level, const Index3& chunk, std::span<const std::byte> samples,
+               bool zeros = false) const;
     /// The samples of a chunk that was written before. Nothing if it is missing or incomplete.
     std::optional<std::vector<std::byte>> written(int level, const Index3& chunk) const;
     /// Chunks of all levels that are stored.
