@@ -177,8 +177,9 @@ VolumeEditor::Lock VolumeEditor::locked(std::mutex& mutex, const std::stop_token
 
 void VolumeEditor::apply(const Edit& asked, const OnProgress& progress) {
     stream::while_telling(progress, [&](const std::stop_token& stop, std::atomic<double>& made) {
+        Later later;
         Lock lock = locked(mutex_, stop);
-        use(computed(lock, asked, stop, until(stop, made)), asked, EditStep::own);
+        use(computed(lock, asked, later, stop, until(stop, made)), asked, EditStep::own, later);
         new_step_ = true;
     });
 }
@@ -221,17 +222,18 @@ std::uint64_t VolumeEditor::version_of(const std::shared_ptr<const Samples>& sam
 /// Computes an edit without the lock. If the samples have changed meanwhile, it is computed again.
 /// Edits that have not begun yet then wait for it, because it might never end otherwise. What it
 /// has read is kept for the next time. Throws what edited() and `tell` throw.
-VolumeEditor::Computed VolumeEditor::computed(Lock& lock, const Edit& asked,
+VolumeEditor::Computed VolumeEditor::computed(Lock& lock, const Edit& asked, Later& later,
                                               const std::stop_token& stop, const OnProgress& tell) {
-    Fetched fetched;
     const auto take_turn = [&] { return without(lock, [&] { return locked(turn_, stop); }); };
     Lock turn = take_turn();
     turn.unlock();
     while (true) {
         const std::shared_ptr<const Samples> before = editor_.samples();
-        Edited made = without(lock, [&] { return compute(before, asked, fetched, stop, tell); });
+        Edited made =
+            without(lock, [&] { return compute(before, asked, later.fetched, stop, tell); });
         if (stop.stop_requested()) throw stream::Cancelled{};
         if (editor_.samples() == before) return {version_of(before), std::move(made)};
+        later.versions.insert(later.versions.end(), {before, std::move(made.samples)});
         if (!turn.owns_lock()) turn = take_turn();
     }
 }
@@ -255,8 +257,8 @@ Edited VolumeEditor::compute(const std::shared_ptr<const Samples>& before, const
 }
 
 /// With the lock, since before the samples could have changed again. False if nothing changes.
-bool VolumeEditor::use(Computed computed, const Edit& asked, EditStep step) {
-    if (editor_.take(std::move(computed.edited), step).empty()) return false;
+bool VolumeEditor::use(Computed computed, const Edit& asked, EditStep step, Later& later) {
+    if (editor_.take(std::move(computed.edited), step, &later.versions).empty()) return false;
     last_version_ = streamer_ ? streamer_->next_version() : last_version_ + 1;
     command::Samples made{editor_.samples(), last_version_,
                           std::make_shared<const Recipe>(EditOf{computed.from, asked})};
@@ -293,7 +295,7 @@ void VolumeEditor::publish() {
                   editor_.undo_steps(), editor_.redo_steps(),
                   editor_.changed(),    problem_};
     const std::scoped_lock lock(state_mutex_);
-    state_ = std::move(now);
+    std::swap(state_, now);
 }
 
 void VolumeEditor::set_problem(const std::string& problem) {
@@ -339,13 +341,14 @@ void VolumeEditor::run(const std::stop_token& stop) {
 }
 
 void VolumeEditor::step(std::chrono::steady_clock::time_point now) {
+    Later later;
     Lock lock(mutex_);
     send_waiting();
     const std::stop_token stop = brushing_.get_token();
     try {
         // The lock is free while a stroke is computed: hands may be added meanwhile. All else that
         // changes them interrupts the brush.
-        for (std::size_t i = 0; i < hands_.size(); ++i) brush(lock, i, now, stop);
+        for (std::size_t i = 0; i < hands_.size(); ++i) brush(lock, i, later, now, stop);
     } catch (const stream::Cancelled&) {  // interrupted, or the editor ends
     } catch (const std::exception& e) {   // no memory, nothing to be read
         if (stop.stop_requested()) return;
@@ -355,8 +358,8 @@ void VolumeEditor::step(std::chrono::steady_clock::time_point now) {
     }
 }
 
-void VolumeEditor::brush(Lock& lock, std::size_t i, std::chrono::steady_clock::time_point now,
-                         const std::stop_token& stop) {
+void VolumeEditor::brush(Lock& lock, std::size_t i, Later& later,
+                         std::chrono::steady_clock::time_point now, const std::stop_token& stop) {
     Hand& hand = hands_[i];
     if (!brush_) return;
     const auto felt = hand.servo->snapshot();
@@ -371,7 +374,7 @@ void VolumeEditor::brush(Lock& lock, std::size_t i, std::chrono::steady_clock::t
     if (!works) return hand.touch.reset();
     const Touch to{
         {session.tick.proxy.scp, session.tick.tool.proxy}, session.tick.time, felt->number};
-    if (hand.touch && brush_to(lock, i, to, session.tick.proxy.isovalue, stop)) {
+    if (hand.touch && brush_to(lock, i, to, session.tick.proxy.isovalue, later, stop)) {
         last_change_ = now;
     }
     if (now - last_change_ > rest) new_step_ = true;
@@ -380,7 +383,7 @@ void VolumeEditor::brush(Lock& lock, std::size_t i, std::chrono::steady_clock::t
 
 /// Sweeps the brush of a hand to where it touches now. True if it changed something.
 bool VolumeEditor::brush_to(Lock& lock, std::size_t i, const Touch& to, double isovalue,
-                            const std::stop_token& stop) {
+                            Later& later, const std::stop_token& stop) {
     const Touch from = *hands_[i].touch;
     const auto brush =
         brush_at(*brush_, hands_[i].field, isovalue, std::min(to.time - from.time, longest_step));
@@ -389,8 +392,8 @@ bool VolumeEditor::brush_to(Lock& lock, std::size_t i, const Touch& to, double i
     try {
         const Edit asked = edit_of(lock, *brush, from.at, to.at, i, stop);
         std::atomic<double> made{0};
-        Computed stroke = computed(lock, asked, stop, until(stop, made));
-        changed = use(std::move(stroke), asked, new_step_ ? EditStep::own : EditStep::same);
+        Computed stroke = computed(lock, asked, later, stop, until(stop, made));
+        changed = use(std::move(stroke), asked, new_step_ ? EditStep::own : EditStep::same, later);
     } catch (const std::invalid_argument& e) {
         if (stop.stop_requested()) throw stream::Cancelled{};
         set_problem(e.what());  // for example a value on the wrong side of the level felt now
@@ -424,8 +427,9 @@ EditState VolumeEditor::state() const {
 }
 
 void VolumeEditor::set_saved(const std::shared_ptr<const Samples>& samples) {
+    std::shared_ptr<const Samples> before;  // freed without the lock
     const std::scoped_lock lock(mutex_);
-    if (editor_.samples() == samples) editor_.set_saved();
+    if (editor_.samples() == samples) before = editor_.set_saved();
     publish();
 }
 

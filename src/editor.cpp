@@ -31,12 +31,13 @@ SampleBox Editor::apply(const Edit& edit, EditStep step, const OnProgress& progr
     return take(edited(samples_, edit, read_, progress), step);
 }
 
-SampleBox Editor::take(Edited result, EditStep step) {
+SampleBox Editor::take(Edited result, EditStep step, Versions* dropped) {
     begun_ |= step == EditStep::own;
     if (result.changed.empty()) return {};
     const bool same = !std::exchange(begun_, false) && undone_from_ > 0 && redo_steps() == 0;
-    steps_.resize(undone_from_);
+    drop(undone_from_, steps_.size(), dropped);
     if (same) {
+        if (dropped) dropped->push_back(steps_.back().after);
         steps_.back().after = result.samples;
         steps_.back().box = united(steps_.back().box, result.changed);
     } else {
@@ -46,7 +47,7 @@ SampleBox Editor::take(Edited result, EditStep step) {
     Step& last = steps_.back();
     last.bytes = bytes_between(*last.before, *last.after);
     samples_ = std::move(result.samples);
-    forget();
+    forget(dropped);
     return result.changed;
 }
 
@@ -70,14 +71,23 @@ std::size_t Editor::history_bytes() const {
     return bytes;
 }
 
-/// Drops the oldest steps beyond the limit; the last one stays, however large.
-void Editor::forget() {
-    std::size_t bytes = history_bytes();
-    while (steps_.size() > 1 && bytes > most_bytes_) {
-        bytes -= steps_.front().bytes;
-        steps_.pop_front();
-        --undone_from_;
+void Editor::drop(std::size_t first, std::size_t end, Versions* dropped) {
+    for (std::size_t i = first; dropped && i < end; ++i) {
+        dropped->insert(dropped->end(), {steps_[i].before, steps_[i].after});
     }
+    const auto begin = steps_.begin();
+    steps_.erase(begin + static_cast<std::ptrdiff_t>(first),
+                 begin + static_cast<std::ptrdiff_t>(end));
+}
+
+/// Drops the oldest steps beyond the limit; the last one stays, however large.
+void Editor::forget(Versions* dropped) {
+    std::size_t bytes = history_bytes(), oldest = 0;
+    for (; oldest + 1 < steps_.size() && bytes > most_bytes_; ++oldest) {
+        bytes -= steps_[oldest].bytes;
+    }
+    drop(0, oldest, dropped);
+    undone_from_ -= oldest;
 }
 
 }  // namespace palpate

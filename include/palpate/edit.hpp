@@ -6,8 +6,11 @@
 
 #include <deque>
 #include <functional>
+#include <memory>
 #include <span>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include "palpate/field.hpp"
 #include "palpate/names.hpp"
@@ -136,6 +139,8 @@ enum class EditStep : std::uint8_t { own, same };
 /// that did not change. One thread at a time.
 class Editor {
   public:
+    using Versions = std::vector<std::shared_ptr<const Samples>>;
+
     /// Keeps at most `history_bytes` of samples for undo() and redo(). The oldest steps are dropped
     /// first. `read` is for large grids, see edited().
     explicit Editor(std::shared_ptr<const Samples> samples,
@@ -147,8 +152,10 @@ class Editor {
     /// has then changed nothing.
     SampleBox apply(const Edit& edit, EditStep step = EditStep::own,
                     const OnProgress& progress = {});
-    /// The same for an edit of samples(), computed with edited().
-    SampleBox take(Edited result, EditStep step = EditStep::own);
+    /// The same for an edit of samples(), computed with edited(). Versions that undo() and redo()
+    /// no longer lead to are added to `dropped`, if it is given, for a caller that frees them
+    /// later.
+    SampleBox take(Edited result, EditStep step = EditStep::own, Versions* dropped = nullptr);
     /// Undoes the last step, or redoes the step undone last. Returns the box of samples that
     /// changed. It is empty if there is no such step.
     SampleBox undo();
@@ -159,8 +166,8 @@ class Editor {
     std::size_t history_bytes() const;
     /// True if the current version is not the saved one. At the start the first version is saved.
     bool changed() const { return samples_ != saved_; }
-    /// Marks the current version as saved.
-    void set_saved() { saved_ = samples_; }
+    /// Marks the current version as saved. Returns the one that was before.
+    std::shared_ptr<const Samples> set_saved() { return std::exchange(saved_, samples_); }
 
   private:
     struct Step {
@@ -168,7 +175,8 @@ class Editor {
         SampleBox box;
         std::size_t bytes = 0;
     };
-    void forget();
+    void drop(std::size_t first, std::size_t end, Versions* dropped);
+    void forget(Versions* dropped);
 
     std::shared_ptr<const Samples> samples_, saved_;
     std::deque<Step> steps_;  // in order, of which those from undone_from_ on are undone

@@ -179,6 +179,28 @@ TEST(Editor, versions_that_can_no_longer_be_reached_are_freed) {
     EXPECT_TRUE(inside_stroke.expired());
 }
 
+TEST(Editor, versions_that_it_drops_can_be_freed_later) {
+    Editor editor(samples_of(noise_of(SampleType::uint8, grid(cube(20)), 1)), 1);
+    std::vector<std::weak_ptr<const Samples>> known = {editor.samples()};
+    Editor::Versions dropped;
+    const auto take = [&](const Edit& edit, EditStep step = EditStep::own) {
+        (void)editor.take(edited(editor.samples(), edit), step, &dropped);
+        known.push_back(editor.samples());
+    };
+    take(fill(3, 1));
+    editor.undo();
+    take(fill(4, 2));
+    take(fill(5, 2), EditStep::same);
+    take(fill(6, 3));
+    (void)editor.set_saved();
+    const auto alive = [&] {
+        return std::ranges::count_if(known, [](const auto& one) { return !one.expired(); });
+    };
+    EXPECT_EQ(alive(), 5) << "some versions were freed at once";
+    dropped.clear();
+    EXPECT_EQ(alive(), 2) << "the last step has two";
+}
+
 TEST(Editor, knows_whether_its_samples_are_saved) {
     Editor editor(samples_of(noise_of(SampleType::uint8, grid(cube(20)), 1)));
     EXPECT_FALSE(editor.changed());

@@ -3,10 +3,14 @@
 
 #include <cmath>
 #include <cstring>
+#include <functional>
+#include <future>
 #include <optional>
 
+#include "palpate/run/streamer.hpp"
 #include "palpate/stream/store.hpp"
 #include "run/run_support.hpp"
+#include "support/scratch_folder.hpp"
 
 namespace palpate::run {
 namespace {
@@ -331,6 +335,44 @@ TEST(VolumeEditor, edits_that_wait_for_their_turn_stop_when_asked_to) {
     EXPECT_THROW(p.editor.attach({make_renderer(p.field, p.isovalue, {}), {}}, start),
                  std::runtime_error);
     EXPECT_EQ(p.editor.state().version, 1U);
+}
+
+/// A store with an editor that has room for one step of undo().
+struct LittleHistory {
+    support::ScratchFolder folder;
+    std::optional<Streamer> streamer;
+    std::optional<VolumeEditor> editor;
+
+    /// `free` deletes the first version.
+    explicit LittleHistory(const std::function<void(const Samples*)>& free) {
+        const std::string path = (folder / "ball.nrrd").string();
+        io::write_volume(test::loaded("synthetic:sphere:64x64x64").volume, path);
+        const LoadedVolume ball = load(source_from({{"volume", path}, {"level", "0"}}));
+        streamer.emplace(ball, Pace::by_steps);
+        std::shared_ptr<const Samples> first(new Samples(*start_samples(ball)), free);
+        editor.emplace(std::move(first), *streamer, 480'000, Pace::by_steps);
+    }
+    void fill(double value) { editor->apply(edit::Fill{{{0, 0, 0}, {30, 30, 30}}, value}); }
+};
+
+TEST(VolumeEditor, frees_versions_that_undo_no_longer_leads_to_without_its_lock) {
+    bool is_freed = false, was_locked = false;
+    VolumeEditor* editor = nullptr;
+    std::future<void> asked;
+    LittleHistory p([&](const Samples* version) {
+        is_freed = true;
+        asked = std::async(std::launch::async, [&] { (void)editor->knows_history(); });
+        was_locked = asked.wait_for(std::chrono::seconds(10)) != std::future_status::ready;
+        delete version;
+    });
+    editor = &*p.editor;
+    p.fill(11);
+    editor->set_saved(editor->state().samples);
+    EXPECT_FALSE(is_freed) << "undo leads to it";
+    p.fill(12);
+    EXPECT_EQ(editor->state().undo_steps, 1U);
+    EXPECT_TRUE(is_freed);
+    EXPECT_FALSE(was_locked);
 }
 
 TEST(VolumeEditor, refuses_brushes_that_cannot_work_and_says_why) {

@@ -122,6 +122,11 @@ class VolumeEditor {
     };
     /// The samples that an edit reads, by the low corner of the box.
     using Fetched = std::map<std::array<int, 3>, std::vector<std::byte>>;
+    /// Memory that is freed when the lock has been released, because that may take long.
+    struct Later {
+        Editor::Versions versions;
+        Fetched fetched;
+    };
     /// An edit of the version `from`.
     struct Computed {
         std::uint64_t from;
@@ -138,16 +143,16 @@ class VolumeEditor {
     void forget_versions();
     using Lock = std::unique_lock<std::mutex>;
     static Lock locked(std::mutex& mutex, const std::stop_token& stop);
-    Computed computed(Lock& lock, const Edit& edit, const std::stop_token& stop,
+    Computed computed(Lock& lock, const Edit& edit, Later& later, const std::stop_token& stop,
                       const OnProgress& tell);
     Edited compute(const std::shared_ptr<const Samples>& before, const Edit& edit, Fetched& fetched,
                    const std::stop_token& stop, const OnProgress& tell) const;
-    bool use(Computed computed, const Edit& edit, EditStep step);
+    bool use(Computed computed, const Edit& edit, EditStep step, Later& later);
     void interrupt_brush();
     void run(const std::stop_token& stop);
-    void brush(Lock& lock, std::size_t hand, std::chrono::steady_clock::time_point now,
-               const std::stop_token& stop);
-    bool brush_to(Lock& lock, std::size_t hand, const Touch& to, double isovalue,
+    void brush(Lock& lock, std::size_t hand, Later& later,
+               std::chrono::steady_clock::time_point now, const std::stop_token& stop);
+    bool brush_to(Lock& lock, std::size_t hand, const Touch& to, double isovalue, Later& later,
                   const std::stop_token& stop);
     Edit edit_of(Lock& lock, const Brush& brush, const Pose& from, const Pose& to, std::size_t hand,
                  const std::stop_token& stop);
