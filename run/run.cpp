@@ -436,7 +436,7 @@ void Run::record_together(std::span<Run* const> runs, const std::filesystem::pat
     for (std::size_t i = 0; i < runs.size(); ++i) {
         Run& run = *runs[i];
         try {
-            run.stop_recording();
+            run.stop_recording(progress);
         } catch (const io::OutputError&) {
             lost = std::current_exception();
         }
@@ -480,14 +480,14 @@ void Run::drop_recording() {
     data_->release(recorded_as_);
 }
 
-std::int64_t Run::stop_recording() {
+std::int64_t Run::stop_recording(const OnProgress& progress) {
     if (!recording_) return 0;
     if (servo_) servo_->stop_recording();
     const std::int64_t lost = servo_ ? servo_->report().unrecorded - lost_before_ : 0;
     lost_before_ += lost;
     const auto recording = std::move(recording_);
     data_->release(recorded_as_);
-    recording->finish(lost, hand_);
+    recording->finish(lost, hand_, progress);
     return recording->ticks(hand_);
 }
 

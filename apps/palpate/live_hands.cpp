@@ -67,10 +67,10 @@ void record(std::vector<LiveHand>& hands, const std::string& path) {
     run::Run::record_together(runs, path, stop_if_interrupted);
 }
 
-std::vector<std::int64_t> stop_recording(std::vector<LiveHand>& hands) {
+std::vector<std::int64_t> stop_recording(std::vector<LiveHand>& hands, const OnProgress& progress) {
     std::vector<std::int64_t> ticks;
     for (LiveHand& hand : hands) {
-        if (hand.run->recording()) ticks.push_back(hand.run->stop_recording());
+        if (hand.run->recording()) ticks.push_back(hand.run->stop_recording(progress));
     }
     return ticks;
 }

@@ -43,7 +43,7 @@ void step(std::vector<LiveHand>& hands, double seconds);
 /// Records all hands into one file.
 void record(std::vector<LiveHand>& hands, const std::string& path);
 /// The ticks of each hand; empty without a recording. Throws io::OutputError.
-std::vector<std::int64_t> stop_recording(std::vector<LiveHand>& hands);
+std::vector<std::int64_t> stop_recording(std::vector<LiveHand>& hands, const OnProgress& progress);
 /// What is wrong with the devices that have failed; empty: none has.
 std::string failure_of(const std::vector<LiveHand>& hands);
 

@@ -1,6 +1,4 @@
 // The program `palpate`.
-#include <malloc.h>
-
 #include <algorithm>
 #include <string_view>
 #include <utility>
@@ -9,10 +7,10 @@
 #include "apps/palpate/program.hpp"
 #include "apps/palpate/python_commands.hpp"
 #include "apps/palpate/window.hpp"
+#include "io/system/system.hpp"
 
 int main(int argc, char** argv) {
-    // Bricks and pieces that are dropped go back to the system, whatever lies behind them.
-    mallopt(M_MMAP_THRESHOLD, 128 << 10);
+    palpate::io::return_large_blocks();  // dropped bricks and pieces
     using namespace palpate::app;
     // In `palpate -- info`, the hyphens end the options, of which there are none.
     if (argc > 1 && argv[1] == std::string_view("--")) {

@@ -79,6 +79,13 @@ void print_report(const std::vector<LiveHand>& hands, double seconds, const RunO
     }
 }
 
+/// The progress of work after a session, also one that Ctrl-C has ended: a further one ends it.
+OnProgress until_interrupted_again() {
+    return [before = interruptions()](double) {
+        if (interruptions() > before) throw Interrupted{};
+    };
+}
+
 /// Data::save() for --save, also after Ctrl-C. A further Ctrl-C ends it.
 std::string save(run::Data& data, const RunOptions& options) {
     const int before = interruptions();
@@ -111,11 +118,7 @@ void save_as_asked(run::Data& data, const RunOptions& options) {
 std::string rescued(run::Data& data) {
     if (data.is_sequence() || !data.editor().state().changed) return "";
     try {
-        const int before = interruptions();
-        const auto until_interrupted = [&](double) {
-            if (interruptions() > before) throw Interrupted{};
-        };
-        return "; the edits are kept in " + data.rescue(until_interrupted).string();
+        return "; the edits are kept in " + data.rescue(until_interrupted_again()).string();
     } catch (const Interrupted&) {
         return "; keeping them elsewhere was interrupted";
     } catch (const std::exception& e) {
@@ -166,7 +169,10 @@ void finish_recording(std::vector<LiveHand>& hands, const RunOptions& options) {
     const bool was_told = recording && !recording->problem().empty();  // by the terminal
     std::vector<std::int64_t> ticks;
     try {
-        ticks = stop_recording(hands);
+        ticks = stop_recording(hands, until_interrupted_again());
+    } catch (const Interrupted&) {
+        throw io::OutputError(options.record +
+                              ": is not complete: its reader was not waited for any longer");
     } catch (const io::OutputError&) {
         if (!was_told) throw;
         throw io::OutputError(options.record + ": is not complete");

@@ -212,7 +212,7 @@ extern "C" PALPATE_API palpate_status palpate_run_record_together(palpate_run* c
 extern "C" PALPATE_API palpate_status palpate_run_stop_recording(palpate_run* run, int64_t* ticks) {
     return guarded([&] {
         const auto lock = locked(run);
-        const std::int64_t recorded = run->run->stop_recording();
+        const std::int64_t recorded = run->run->stop_recording(progress_of_thread());
         if (ticks) *ticks = recorded;
     });
 }

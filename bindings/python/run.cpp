@@ -274,8 +274,9 @@ void bind_run(py::module_& module) {
             "record", [](R& r, const fs::path& path) { r.here().record(path, ctrl_c()); },
             py::arg("path"), Unlocked(), "Records from now on, to a new file. Raises OutputError.")
         .def(
-            "stop_recording", [](R& r) { return r.here().stop_recording(); }, Unlocked(),
-            "The number of its ticks. The session goes on.")
+            "stop_recording", [](R& r) { return r.here().stop_recording(ctrl_c()); }, Unlocked(),
+            "The number of its ticks. The session goes on. Ctrl-C ends the wait for a pipe that is "
+            "read slowly.")
         .def("field", &R::field_now, Unlocked(), "A copy of the Field felt, edits included.")
         .def_property_readonly("device", &R::device, "DeviceInfo")
         .def_property_readonly("isovalue", &R::isovalue,

@@ -71,8 +71,8 @@ PALPATE_API const char *palpate_last_error(void);
 /* Sets a function (or null) that reports the progress of long calls of this thread: they call it with
  * 0 to 1, unless their options have a function of their own. It returns 0 to cancel the call. Long calls
  * copy, adopt, load or describe a volume, look up many values, make a field, a mesh, a renderer or a
- * run, edit or save data, or read a tool. Others look for devices, change the device, or begin a
- * recording. A cancelled edit is made as a whole or not at all. Calls from within a callback do not
+ * run, edit or save data, or read a tool. Others look for devices, change the device, begin a
+ * recording, or end one whose pipe is read slowly. A cancelled edit is made as a whole or not at all. Calls from within a callback do not
  * call it. */
 PALPATE_API void palpate_set_progress(int32_t (*progress)(double fraction, void *context),
                                       void *context);
@@ -580,7 +580,8 @@ PALPATE_API palpate_status palpate_run_record(palpate_run *run, const char *path
  * is complete when the last of them has stopped its recording. Since 0.3. */
 PALPATE_API palpate_status palpate_run_record_together(palpate_run *const *runs, size_t count,
                                                        const char *path);
-/* ticks (may be null): how many were recorded. */
+/* ticks (may be null): how many were recorded. The reader of a pipe that reads slowly is waited for until
+ * the progress function cancels, or for half a second without one. */
 PALPATE_API palpate_status palpate_run_stop_recording(palpate_run *run, int64_t *ticks);
 /* Sets the target of the hand of the device "mouse" [device mm]. */
 PALPATE_API palpate_status palpate_run_aim(palpate_run *run, const double position[3]);

@@ -4,6 +4,8 @@
 #include <cerrno>
 #include <chrono>
 #include <system_error>
+#include <thread>
+#include <utility>
 
 #include "io/recording/recording_text.hpp"
 #include "io/system/stepping_thread.hpp"
@@ -16,8 +18,10 @@ using namespace std::chrono_literals;
 
 constexpr auto between_writes = 100ms;
 constexpr auto between_syncs = 500ms;
-/// For the reader of a pipe. The queues have no room for more.
+/// For the reader of a pipe that reads nothing. The queues have no room for more.
 constexpr std::chrono::seconds patience{8};
+/// For the same at the end, where nobody says how long it is waited for.
+constexpr std::chrono::milliseconds last_patience{500};
 constexpr std::size_t most_buffered = std::size_t{1} << 20;
 
 /// Room for the ticks of eight seconds and the commands between them.
@@ -25,7 +29,20 @@ std::size_t room_for(double rate) {
     return static_cast<std::size_t>(8 * rate);
 }
 
+using Clock = std::chrono::steady_clock;
+/// The reader of a pipe is not waited for any longer.
+struct Unread {
+    int error;  ///< for why()
+};
+
+OnProgress until_late() {
+    return [end = Clock::now() + last_patience](double) {
+        if (Clock::now() > end) throw Unread{EINTR};
+    };
+}
+
 std::string why(int error) {
+    if (error == EINTR) return "its reader was not waited for any longer: let it read on";
     if (error == ETIMEDOUT) return "its reader has not read for 8 s: let it read on";
     return reason(error) + (means_full(error) ? ": free some space" : ": record to another place");
 }
@@ -73,9 +90,36 @@ void RecordingWriter::keep_on_disk() const {
 }
 
 RecordingWriter::~RecordingWriter() {
+    try {
+        if (descriptor_ >= 0 && !seekable_) {
+            const OnProgress wait = until_late();
+            const auto lock = locked_file(wait);
+            flush(wait);
+        }
+    } catch (const std::exception&) {  // no memory
+    }
+    gives_up_ = true;
     end_threads();
     if (descriptor_ >= 0) step();
     close();
+}
+
+/// The thread may have the lock while it waits for the reader of a pipe.
+std::unique_lock<std::mutex> RecordingWriter::locked_file(const OnProgress& wait) {
+    std::unique_lock lock(file_mutex_, std::defer_lock);
+    if (seekable_) lock.lock();
+    while (!lock.owns_lock() && !lock.try_lock()) {
+        try {
+            if (!gives_up_) wait(1);
+        } catch (...) {
+            gives_up_ = true;
+            lock.lock();  // whose thread ends its wait now
+            given_up_ = std::current_exception();
+            return lock;
+        }
+        std::this_thread::sleep_for(1ms);
+    }
+    return lock;
 }
 
 /// Together, as both may have to wait.
@@ -94,21 +138,29 @@ std::string RecordingWriter::problem() const {
     return problem_;
 }
 
-void RecordingWriter::finish(std::int64_t lost, int hand) {
+void RecordingWriter::finish(std::int64_t lost, int hand, const OnProgress& progress) {
+    const OnProgress wait = progress ? progress : until_late();
     bool is_last = false;
+    std::exception_ptr given_up;
     {
-        const std::scoped_lock lock(file_mutex_);
-        drain(hand);
-        flush();
+        const auto lock = locked_file(wait);
+        drain(hand, wait);
+        flush(wait);
         lost_ += lost;
         is_last = ++ended_ == hands_.size();
+        given_up = std::exchange(given_up_, nullptr);
     }
     if (is_last) {
         end_threads();  // they may wait for the lock
         text_->end(lost_, begins());
-        flush();
+        flush(wait);
         keep_on_disk();
         close();
+        if (given_up_) given_up = std::exchange(given_up_, nullptr);
+    }
+    try {
+        if (given_up) std::rethrow_exception(given_up);
+    } catch (const Unread&) {  // which problem() tells
     }
     if (const std::string wrong = problem(); !wrong.empty()) throw OutputError(wrong);
 }
@@ -116,7 +168,7 @@ void RecordingWriter::finish(std::int64_t lost, int hand) {
 void RecordingWriter::step() {
     try {
         const std::scoped_lock lock(file_mutex_);
-        drain();
+        for (int hand = 1; hand <= static_cast<int>(hands_.size()); ++hand) drain(hand);
         flush();
     } catch (const std::bad_alloc&) {  // an event is lost, so that nothing may follow
         const std::scoped_lock lock(mutex_);
@@ -147,11 +199,7 @@ std::vector<double> RecordingWriter::begins() {
     return begins;
 }
 
-void RecordingWriter::drain() {
-    for (int hand = 1; hand <= static_cast<int>(hands_.size()); ++hand) drain(hand);
-}
-
-void RecordingWriter::drain(int hand) {
+void RecordingWriter::drain(int hand, const OnProgress& wait) {
     Hand& from = of(hand);
     const auto begin = [&] {
         std::vector<Command> first;
@@ -161,29 +209,53 @@ void RecordingWriter::drain(int hand) {
         }
         for (const Command& command : first) {
             text_->append(command, hand);
-            if (text_->lines.size() > most_buffered) flush();
+            if (text_->lines.size() > most_buffered) flush(wait);
         }
     };
     begin();
     while (const auto event = from.queue.pop()) {
         begin();  // those that were given meanwhile, before the first event
         std::visit([&](const auto& one) { text_->append(one, hand); }, *event);
-        if (text_->lines.size() > most_buffered) flush();
+        if (text_->lines.size() > most_buffered) flush(wait);
     }
 }
 
-void RecordingWriter::flush() {
+/// To the reader of a pipe, in parts. What is left stays in `rest`; returns why.
+int RecordingWriter::pass_on(std::string_view& rest, const OnProgress& wait) {
+    constexpr std::size_t part = 4096;
+    try {
+        while (!rest.empty()) {
+            const auto latest = Clock::now() + patience;
+            const auto while_unread = [&] {
+                if (wait) wait(1);
+                if (gives_up_) throw Unread{EINTR};
+                if (Clock::now() > latest) throw Unread{ETIMEDOUT};
+            };
+            if (!write_all(descriptor_, rest.substr(0, part), while_unread)) return errno;
+            rest.remove_prefix(std::min(part, rest.size()));
+        }
+    } catch (const Unread& unread) {
+        return unread.error;
+    } catch (...) {
+        gives_up_ = true;
+        given_up_ = std::current_exception();
+        return EINTR;
+    }
+    return 0;
+}
+
+void RecordingWriter::flush(const OnProgress& wait) {
     std::string& buffer = text_->lines;
     if (!problem().empty()) buffer.clear();
     std::string_view rest = buffer;
-    if (!seekable_ && write_all(descriptor_, rest, patience)) rest = {};
+    const int unread = seekable_ ? 0 : pass_on(rest, wait);
     while (seekable_ && !rest.empty()) {
         const ssize_t count = ::write(descriptor_, rest.data(), rest.size());
         if (count < 0 && errno == EINTR) continue;
         if (count <= 0) break;
         rest.remove_prefix(static_cast<std::size_t>(count));
     }
-    const int error = errno;
+    const int error = seekable_ ? errno : unread;
     const std::string_view done(buffer.data(), buffer.size() - rest.size());
     written_ += static_cast<std::int64_t>(done.rfind('\n') + 1);  // npos + 1 is 0
     if (!rest.empty()) {

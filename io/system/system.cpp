@@ -2,6 +2,7 @@
 #include "io/system/system.hpp"
 
 #include <fcntl.h>
+#include <malloc.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/mman.h>
@@ -10,12 +11,10 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <climits>
 #include <cstdio>
 #include <fstream>
 #include <new>
-#include <optional>
 #include <span>
 
 #include "io/system/open_file.hpp"
@@ -33,6 +32,10 @@ std::uint64_t resident_memory() {
 std::uint64_t machine_memory() {
     return static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
            static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
+}
+
+void return_large_blocks() {
+    mallopt(M_MMAP_THRESHOLD, 128 << 10);
 }
 
 std::shared_ptr<std::byte> fresh_memory(std::size_t bytes) {
@@ -78,6 +81,9 @@ int open_to_read(const std::filesystem::path& path) {
 
 namespace {
 
+/// Of something that is waited for.
+constexpr timespec between_looks{0, 50'000'000};
+
 /// While it exists, signals come to this thread in wait() only, so that none between two waits is
 /// missed. They restart open() and write(), but never this wait.
 class SignalsInWaits {
@@ -94,22 +100,38 @@ class SignalsInWaits {
     int wait(std::span<pollfd> descriptors, const timespec* most) const {
         return ::ppoll(descriptors.data(), descriptors.size(), most, &before_);
     }
+    /// Drops the signal of a reader that has gone, which would end a program that does not expect
+    /// it: write() tells.
+    static void drop_broken_pipe() {
+        sigset_t broken;
+        ::sigemptyset(&broken);
+        ::sigaddset(&broken, SIGPIPE);
+        constexpr timespec at_once{};
+        ::sigtimedwait(&broken, nullptr, &at_once);
+    }
 
   private:
     sigset_t before_{};
 };
 
 /// In parts that a pipe takes at once when it is ready.
-bool write_to_stream(int descriptor, std::string_view bytes, const timespec* most) {
+bool write_to_stream(int descriptor, std::string_view bytes, const std::function<void()>& wait) {
     const SignalsInWaits signals;
     pollfd reader{descriptor, POLLOUT, 0};
     while (!bytes.empty()) {
-        const int ready = signals.wait({&reader, 1}, most);
-        if (ready == 0) errno = ETIMEDOUT;
-        if (ready <= 0) return false;
+        const int ready = signals.wait({&reader, 1}, wait ? &between_looks : nullptr);
+        if (ready < 0) return false;
+        if (ready == 0) {
+            wait();
+            continue;
+        }
         const ssize_t put =
             ::write(descriptor, bytes.data(), std::min<std::size_t>(bytes.size(), PIPE_BUF));
         if (put < 0 && errno == EAGAIN) continue;
+        if (put < 0 && errno == EPIPE) {
+            SignalsInWaits::drop_broken_pipe();
+            errno = EPIPE;
+        }
         if (put < 0) return false;
         bytes.remove_prefix(static_cast<std::size_t>(put));
     }
@@ -127,12 +149,11 @@ int open_to_write(const std::filesystem::path& path, const std::function<void()>
     int file = -1, problem = 0;
     {
         const SignalsInWaits signals;
-        constexpr timespec between{0, 50'000'000};
         while ((file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY)) < 0) {
             problem = errno;
             if (!lacks_reader()) break;
             if (wait) wait();
-            if (signals.wait({}, &between) == 0) continue;
+            if (signals.wait({}, &between_looks) == 0) continue;
             problem = errno;
             break;
         }
@@ -174,11 +195,10 @@ std::ptrdiff_t read_at(int descriptor, void* to, std::size_t bytes, std::uint64_
     return static_cast<std::ptrdiff_t>(done);
 }
 
-bool write_all(int descriptor, std::string_view bytes, std::optional<std::chrono::seconds> most) {
+bool write_all(int descriptor, std::string_view bytes, const std::function<void()>& wait) {
     struct stat about {};
     const bool is_stream = ::fstat(descriptor, &about) == 0 && !S_ISREG(about.st_mode);
-    const timespec wait{most ? most->count() : 0, 0};
-    if (is_stream) return write_to_stream(descriptor, bytes, most ? &wait : nullptr);
+    if (is_stream) return write_to_stream(descriptor, bytes, wait);
     while (!bytes.empty()) {
         const ssize_t put = ::write(descriptor, bytes.data(), bytes.size());
         if (put < 0 && errno == EINTR) continue;
@@ -190,6 +210,16 @@ bool write_all(int descriptor, std::string_view bytes, std::optional<std::chrono
 
 bool synchronise(int descriptor) {
     return ::fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP || errno == ENOSYS;
+}
+
+bool synchronise_file(const std::filesystem::path& path) {
+    const int file = open_to_read(path);
+    if (file < 0) return false;
+    const bool is_stored = synchronise(file);
+    const int problem = errno;
+    ::close(file);
+    errno = problem;
+    return is_stored;
 }
 
 bool synchronise_all(int folder) {

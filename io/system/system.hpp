@@ -2,13 +2,11 @@
 // descriptor. system.cpp for Linux, system_windows.cpp for Windows. Errors are left in errno.
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -18,6 +16,10 @@ namespace palpate::io {
 std::uint64_t machine_memory();
 /// [bytes] That this process has in memory; 0 where the system does not say.
 std::uint64_t resident_memory();
+
+/// From now on, large blocks of memory go back to the system when they are freed, whatever lies
+/// behind them. (glibc would raise its limit as they are freed, and keep later ones.)
+void return_large_blocks();
 
 /// Memory that is zero, returned to the system as soon as nobody holds it. Throws std::bad_alloc.
 std::shared_ptr<std::byte> fresh_memory(std::size_t bytes);
@@ -53,12 +55,14 @@ std::ptrdiff_t read_at(int descriptor, void* to, std::size_t bytes, std::uint64_
 /// Changes when a file is replaced or written: its number, size and time.
 std::string identity_of(int descriptor);
 /// Writes them all, where a file or stream is written next. A signal to this thread ends the wait
-/// for the reader of a stream: errno is EINTR. So does a reader that reads nothing for so long:
-/// errno is ETIMEDOUT.
-bool write_all(int descriptor, std::string_view bytes,
-               std::optional<std::chrono::seconds> most = std::nullopt);
-/// The file's content to the disk. File systems without this say so; that is no loss of data.
+/// for the reader of a stream: errno is EINTR. Meanwhile `wait`, which may throw, is called twenty
+/// times a second.
+bool write_all(int descriptor, std::string_view bytes, const std::function<void()>& wait = {});
+/// The content of a file that is open to be written to the disk. File systems without this say so;
+/// that is no loss of data.
 bool synchronise(int descriptor);
+/// The same for a file that this process need not be able to write.
+bool synchronise_file(const std::filesystem::path& path);
 /// The same for an open folder and all below it (or more: the whole file system).
 bool synchronise_all(int folder);
 bool truncate(int descriptor, std::int64_t bytes);

@@ -70,6 +70,8 @@ std::uint64_t machine_memory() {
     return ::GlobalMemoryStatusEx(&status) ? status.ullTotalPhys : UINT64_MAX;
 }
 
+void return_large_blocks() {}  // as always
+
 std::shared_ptr<std::byte> fresh_memory(std::size_t bytes) {
     void* at = ::VirtualAlloc(nullptr, bytes, MEM_RESERVE | MEM_COMMIT, PAGE_READWRITE);
     if (!at) throw std::bad_alloc();
@@ -144,7 +146,7 @@ std::ptrdiff_t read_at(int descriptor, void* to, std::size_t bytes, std::uint64_
     return static_cast<std::ptrdiff_t>(taken);
 }
 
-bool write_all(int descriptor, std::string_view bytes, std::optional<std::chrono::seconds>) {
+bool write_all(int descriptor, std::string_view bytes, const std::function<void()>&) {
     while (!bytes.empty()) {
         const int put = ::_write(descriptor, bytes.data(), part_of(bytes.size()));
         if (put < 0) return false;
@@ -153,8 +155,23 @@ bool write_all(int descriptor, std::string_view bytes, std::optional<std::chrono
     return true;
 }
 
+/// Not by _commit(), which gives one error number for all that can be wrong.
 bool synchronise(int descriptor) {
-    return ::_commit(descriptor) == 0 || errno == EINVAL || errno == EBADF;
+    if (::FlushFileBuffers(reinterpret_cast<HANDLE>(::_get_osfhandle(descriptor)))) return true;
+    const DWORD error = ::GetLastError();
+    errno = number_of(error);
+    return error == ERROR_INVALID_FUNCTION || error == ERROR_NOT_SUPPORTED;
+}
+
+/// Only what is open to be written can be synced here.
+bool synchronise_file(const std::filesystem::path& path) {
+    const int file = opened(path, _O_RDWR);
+    if (file < 0) return false;
+    const bool is_stored = synchronise(file);
+    const int problem = errno;
+    ::_close(file);
+    errno = problem;
+    return is_stored;
 }
 
 /// NTFS writes its journal by itself; what a file holds is on the disk by synchronise().

@@ -1,4 +1,6 @@
 // Bad input, streams that cannot be written, and signals: one line, the right status, nothing left.
+#include <poll.h>
+
 #include "apps/program.hpp"
 #include "palpate/io/trace.hpp"
 
@@ -223,6 +225,26 @@ INSTANTIATE_TEST_SUITE_P(
                     "touch synthetic:sphere:24x24x24 --seconds 1 --commands pipe",
                     "touch synthetic:sphere:24x24x24 --seconds 1 --device recorded:file=pipe",
                     "render synthetic:sphere:24x24x24 -o a.png --path pipe"));
+
+TEST(BadOutput, a_recordings_reader_that_does_not_read_is_not_waited_for_after_a_second_signal) {
+    const ScratchFolder folder;
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    Running touch(words_of("touch synthetic:sphere:24x24x24 --headless --quiet --record pipe"),
+                  folder.path());
+    const int reader = ::open((folder / "pipe").c_str(), O_RDONLY);
+    const int other = ::open((folder / "pipe").c_str(), O_WRONLY | O_NONBLOCK);
+    EXPECT_TRUE(comes_true([&] {
+        pollfd room{other, POLLOUT, 0};
+        return ::poll(&room, 1, 0) == 0;
+    }));
+    EXPECT_TRUE(comes_true([&] {
+        touch.signal(SIGINT);
+        return touch.has_ended();
+    }));
+    expect_failure(touch.finish(), 5, "not waited for");
+    ::close(reader);
+    ::close(other);
+}
 
 TEST(BadOutput, on_a_disk_that_is_full_for_the_path_leaves_no_trace) {
     const ScratchFolder folder;

@@ -268,14 +268,26 @@ TEST(Output, to_a_pipe_whose_reader_does_not_read_on_is_waited_for_until_a_signa
     EXPECT_EQ(folder.names(), Names{"pipe"});
 }
 
-TEST(Output, to_a_pipe_that_is_full_ends_when_its_time_is_over) {
+TEST(Output, to_a_pipe_that_is_full_ends_when_the_caller_does_not_wait_for_it) {
+    struct Enough {};
+    const auto wait = [] { throw Enough{}; };
     int ends[2];
     ASSERT_EQ(::pipe(ends), 0);
-    EXPECT_TRUE(write_all(ends[1], "text", std::chrono::seconds(0)));
-    EXPECT_FALSE(write_all(ends[1], std::string(10'000'000, 'x'), std::chrono::seconds(0)));
-    EXPECT_EQ(errno, ETIMEDOUT);
+    EXPECT_TRUE(write_all(ends[1], "text", wait));
+    EXPECT_THROW(write_all(ends[1], std::string(10'000'000, 'x'), wait), Enough);
     ::close(ends[0]);
     ::close(ends[1]);
+}
+
+TEST(Output, to_a_pipe_whose_reader_has_gone_does_not_end_the_program) {
+    const auto before = std::signal(SIGPIPE, SIG_DFL);
+    int ends[2];
+    ASSERT_EQ(::pipe(ends), 0);
+    ::close(ends[0]);
+    EXPECT_FALSE(write_all(ends[1], "text"));
+    EXPECT_EQ(errno, EPIPE);
+    ::close(ends[1]);
+    std::signal(SIGPIPE, before);
 }
 
 TEST(Output, that_waits_for_the_others_of_its_run_is_still_locked) {

@@ -1,9 +1,15 @@
-// Recordings of several hands: each comes back as if it was recorded alone.
+// Recordings of several hands: each comes back as if it was recorded alone. And into a pipe that is
+// not read: nobody waits for its reader longer than they want to.
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/stat.h>
 
 #include <array>
 
+#include "io/process/helper_process.hpp"
 #include "palpate/io/recording.hpp"
+#include "support/eventually.hpp"
 #include "support/press.hpp"
 #include "support/random.hpp"
 #include "support/scratch_folder.hpp"
@@ -164,6 +170,53 @@ TEST(RecordingOfHands, that_is_not_there_or_was_changed_is_refused) {
     EXPECT_TRUE(with("\"hand\":2}", "\"hand\":4294967297}").find("not valid") != std::string::npos);
     EXPECT_TRUE(with("\"hands\"", "\"bands\"").find("'hands' is missing") != std::string::npos);
     EXPECT_TRUE(with("recording 7", "recording 6").starts_with("r.csv: the head is not valid"));
+}
+
+/// A recording of two hands, of more ticks than a pipe has room for.
+struct UnreadRecording {
+    ScratchFolder folder;
+    std::filesystem::path pipe = folder / "pipe";
+    int made = ::mkfifo(pipe.c_str(), 0600);
+    io::Descriptor reader{::open(pipe.c_str(), O_RDONLY | O_NONBLOCK)};
+    io::Descriptor other{
+        ::open(pipe.c_str(), O_WRONLY | O_NONBLOCK)};  // sees whether there is room
+    std::array<io::RecordingHead, 2> heads{head_of_hand(1), head_of_hand(2)};
+    io::RecordingWriter writer{pipe, heads};
+
+    UnreadRecording() {
+        SessionTick tick;
+        for (int i = 0; i < 2000; ++i) {
+            tick.tick.time = 1e-3 * i;
+            for (const int hand : {1, 2}) EXPECT_TRUE(writer.queue(hand).push(tick));
+        }
+        EXPECT_TRUE(comes_true([&] {
+            pollfd room{other.number(), POLLOUT, 0};
+            return ::poll(&room, 1, 0) == 0;
+        }));
+    }
+};
+
+TEST(RecordingInPipe, that_is_not_read_ends_when_the_caller_has_waited_enough) {
+    UnreadRecording p;
+    struct Enough {};
+    int calls = 0;
+    const auto enough = [&](double) {
+        if (++calls > 1) throw Enough{};
+    };
+    EXPECT_THROW(p.writer.finish(0, 1, enough), Enough);
+    EXPECT_TRUE(contains(p.writer.problem(), "not waited for")) << p.writer.problem();
+    const auto never = [](double) { FAIL() << "the reader is waited for again"; };
+    EXPECT_THROW(p.writer.finish(0, 2, never), io::OutputError);
+}
+
+TEST(RecordingInPipe, that_is_not_read_ends_by_itself) {
+    UnreadRecording p;
+    EXPECT_THROW(p.writer.finish(0, 1), io::OutputError);
+    EXPECT_TRUE(contains(p.writer.problem(), "not waited for")) << p.writer.problem();
+}
+
+TEST(RecordingInPipe, that_is_not_read_holds_up_nobody_who_leaves_it) {
+    const UnreadRecording p;
 }
 
 }  // namespace

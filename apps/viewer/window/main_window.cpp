@@ -42,6 +42,7 @@
 #include "apps/viewer/window/tool_controls.hpp"
 #include "apps/viewer/window/views.hpp"
 #include "apps/viewer/window/welcome.hpp"
+#include "io/system/system.hpp"
 #include "palpate/field.hpp"
 #include "palpate/io/output.hpp"
 
@@ -151,10 +152,9 @@ void MainWindow::connect_parts() {
         if (lacks_grid()) return actions_.find("choose_grid")->trigger();
         panel_->show_section(panel_->overlay_controls());
     });
-    // A closed volume goes back to the system: large blocks at once (glibc would raise this limit
-    // as they are freed, and keep later ones), the rest once the threads that draw have released
-    // it.
-    mallopt(M_MMAP_THRESHOLD, 128 << 10);
+    // A closed volume goes back to the system: large blocks at once, the rest once the threads that
+    // draw have released it.
+    io::return_large_blocks();
     connect(&content_, &Content::closed, this,
             [this] { QTimer::singleShot(give_back_ms, this, [] { malloc_trim(0); }); });
     const auto refresh = [this] { actions_.refresh(); };

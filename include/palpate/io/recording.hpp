@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <exception>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -92,7 +93,10 @@ class RecordingWriter {
     /// Call it once for each hand, after its servo has stopped: it writes the rest of its events.
     /// `lost`: number of events that were lost before they reached the writer. For the last hand it
     /// writes the last line, which marks a complete recording. Throws OutputError with problem().
-    void finish(std::int64_t lost, int hand = 1);
+    /// `progress` is called while the reader of a pipe is waited for. If it throws, the rest is
+    /// given up, the pipe is closed, and the exception is passed on. Without it, the reader has
+    /// half a second.
+    void finish(std::int64_t lost, int hand = 1, const OnProgress& progress = {});
 
   private:
     struct Hand {
@@ -103,12 +107,13 @@ class RecordingWriter {
     };
 
     Hand& of(int hand) { return *hands_[static_cast<std::size_t>(hand - 1)]; }
+    std::unique_lock<std::mutex> locked_file(const OnProgress& wait);
     void end_threads();
     void keep_on_disk() const;
     std::vector<double> begins();
-    void drain();
-    void drain(int hand);
-    void flush();
+    void drain(int hand, const OnProgress& wait = {});
+    void flush(const OnProgress& wait = {});
+    int pass_on(std::string_view& rest, const OnProgress& wait);
     void close();
 
     std::filesystem::path path_;
@@ -120,6 +125,8 @@ class RecordingWriter {
     bool seekable_ = false;
     std::size_t ended_ = 0;  // hands
     std::int64_t lost_ = 0;
+    std::exception_ptr given_up_;        // by finish(): the exception of its `progress`
+    std::atomic<bool> gives_up_{false};  // the reader of a pipe. Any thread
     mutable std::mutex
         mutex_;  // of problem_, Hand::first and Hand::begin. The servo never takes it
     std::string problem_;

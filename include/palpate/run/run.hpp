@@ -137,8 +137,9 @@ class Run {
     static void record_together(std::span<Run* const> runs, const std::filesystem::path& path,
                                 const OnProgress& progress = {});
     /// Ends the recording; the session continues. Returns the number of its ticks, 0 without a
-    /// recording. Throws io::OutputError if something could not be written.
-    std::int64_t stop_recording();
+    /// recording. Throws io::OutputError if something could not be written. A pipe's reader that
+    /// reads slowly is waited for until `progress` throws, or for half a second without it.
+    std::int64_t stop_recording(const OnProgress& progress = {});
     /// Null unless a recording is running.
     const io::RecordingWriter* recording() const { return recording_.get(); }
 
