@@ -8,6 +8,7 @@
 
 #include "palpate/io/error.hpp"
 #include "palpate/run/beside.hpp"
+#include "palpate/stream/store.hpp"
 
 namespace palpate::run {
 namespace {
@@ -32,8 +33,21 @@ std::set<int> numbers_in(const Volume& volume) {
     return numbers;
 }
 
+/// The grid of the store that is read as these labels. Null: they are whole.
+const Geometry* grid_read_in_parts(const LoadedVolume& labels) {
+    if (!labels.streamed) return nullptr;
+    const auto& [store, loader, opened] = *labels.streamed;
+    const Geometry& grid = stream::level_of(*store, loader.level).geometry;
+    return grid.size == labels.volume.geometry().size ? nullptr : &grid;
+}
+
 /// Numbers of 32 bits and more are kept as float32, which tells whole numbers apart up to 2^24.
 void require_whole_numbers(const LoadedVolume& labels) {
+    if (grid_read_in_parts(labels)) {
+        throw std::invalid_argument(labels.name +
+                                    ": only an overview of it is in memory, and labels are needed "
+                                    "whole: convert it to a file such as .nrrd");
+    }
     if (labels.time_steps > 1) {
         throw std::invalid_argument(labels.name +
                                     ": has several frames (moments, or segments that overlap), and "
@@ -99,6 +113,26 @@ void attach(Layers& layers, const LoadedVolume& labels) {
 
 }  // namespace
 
+LoadedVolume load_labels(const std::string& name, std::uint64_t memory,
+                         const io::Progress& progress) {
+    constexpr std::uint64_t labels_part = 4;
+    Source source = source_from({{"volume", name}});
+    source.most_bytes = memory / labels_part;
+    LoadedVolume labels = load(source, progress);
+    const Geometry* const grid = grid_read_in_parts(labels);
+    if (!grid) return labels;
+    const auto bytes = static_cast<double>(sample_count(*grid)) *
+                       static_cast<double>(size_of(labels.volume.type()));
+    if (memory > 0 && bytes > static_cast<double>(source.most_bytes)) {
+        throw io::InputError(name + ": its samples need " +
+                             std::to_string(std::llround(bytes / 1e6)) +
+                             " MB, more than a quarter of the memory; allow more memory");
+    }
+    const StreamedVolume& store = *labels.streamed;
+    labels.volume = stream::read_level(*store.store, store.loader.level, progress);
+    return labels;
+}
+
 io::LayersFile layers_of(std::span<const io::LabelName> labels) {
     io::LayersFile file;
     file.layers.name = "Labels";
@@ -137,11 +171,14 @@ std::shared_ptr<const Layers> with_labels(std::shared_ptr<const Layers> layers,
     if (path.is_relative() && !std::filesystem::exists(path, error)) {
         path = recording.parent_path() / path;
     }
+    const bool is_bounded = volume.streamed && volume.streamed->loader.whole_process;
     Layers complete = *layers;
     try {
-        const LoadedVolume labels = load_beside(source_named(path.string()), volume);
+        const LoadedVolume labels =
+            load_labels(path.string(), is_bounded ? volume.streamed->loader.memory : 0);
         require_whole_numbers(labels);
         attach(complete, labels);
+        complete.labels = labels_beside(complete.labels, volume);
     } catch (const std::invalid_argument& e) {
         throw io::InputError(recording.string() + ": its labels: " + e.what());
     }

@@ -105,6 +105,7 @@ LoadedVolume loaded_of(const FileSource& file, const Source& source, const io::P
     options.read.spacing = file.spacing;
     options.read.orientation = file.orientation;
     options.read.series = file.series;
+    options.read.memory_limit_bytes = source.most_bytes;
     options.read.progress = progress;
     if (source.frame && !io::names_a_series(file.path)) {
         return one_frame_of(file, source, options.read);

@@ -51,6 +51,7 @@ run::LevelRange range_from(const std::string& text) {
 
 void RenderOptions::add_to(CLI::App& command, const std::optional<std::uint64_t>& memory) {
     command_ = &command;
+    memory_ = &memory;
     const auto choose = [this](const std::string& name) { given.method = run::named_method(name); };
     command.add_option_function<std::string>("--method", choose, "Proxy method")
         ->check(one_of(baselines::method_names()))
@@ -184,7 +185,7 @@ run::RenderSetup RenderOptions::setup() const {
     run::RenderSetup setup = given;
     if (!labels.empty()) {
         setup.layers = run::layers_by_label(
-            run::load(run::source_named(labels), stop_if_interrupted), setup.layers);
+            run::load_labels(labels, memory_->value_or(0), stop_if_interrupted), setup.layers);
     }
     if (penetrability == Penetrability::threshold) {
         setup.penetrability = run::ThresholdSetup{threshold.value_or(1), minimum};

@@ -36,6 +36,7 @@ struct RenderOptions {
     void add_force_to(CLI::App& command);
 
     const CLI::App* command_ = nullptr;
+    const std::optional<std::uint64_t>* memory_ = nullptr;
     std::string layers_, tool_;
 };
 

@@ -24,7 +24,7 @@ std::vector<devices::DeviceChoice> choices_from(const std::vector<std::string>& 
 }  // namespace
 
 void RunOptions::add_to(CLI::App& command, For purpose) {
-    source.add_to(command, purpose == For::view);
+    source.add_to(command, SourceOptions::For::touching, purpose == For::view);
     add_device_options(command);
     CLI::Option* file = command
                             .add_option(purpose == For::record ? "-o,--output" : "--record", record,

@@ -15,8 +15,9 @@
 
 namespace palpate::app {
 
-void SourceOptions::add_to(CLI::App& command, bool optional) {
+void SourceOptions::add_to(CLI::App& command, For purpose, bool optional) {
     command_ = &command;
+    purpose_ = purpose;
     command
         .add_option("VOLUME", volume(),
                     fmt::format("File, folder, series (heart_%03d.nrrd), web address of a store, "
@@ -64,15 +65,33 @@ void SourceOptions::add_to(CLI::App& command, bool optional) {
     command.add_flag("--prefilter", prefilter,
                      "Sharpen the samples so that thin structures keep their height in the smooth "
                      "field. They become float32");
-    add_streaming_to(command);
+    add_store_options(command);
     command.add_flag("-q,--quiet", quiet, "No progress, no notes");
 }
 
-void SourceOptions::add_streaming_to(CLI::App& command) {
-    command
-        .add_option("--level", texts["level"],
-                    "Level of detail of a store that is touched, 0 for the finest. A plain file is "
-                    "then read while it is touched")
+namespace {
+
+const char* help_of_level(SourceOptions::For purpose) {
+    switch (purpose) {
+        case SourceOptions::For::touching:
+            return "Level of detail of a store that is touched, 0 for the finest. A plain file is "
+                   "then read while it is touched";
+        case SourceOptions::For::description:
+            return "Level of detail of a store whose size and memory are told, 0 for the finest";
+        case SourceOptions::For::surfaces:
+            return "Level of detail of a store that is read whole, 0 for the finest (default: an "
+                   "overview)";
+        case SourceOptions::For::conversion:
+            break;
+    }
+    return "Level of detail of a store that is converted, 0 for the finest";
+}
+
+}  // namespace
+
+void SourceOptions::add_store_options(CLI::App& command) {
+    const bool touches = purpose_ == For::touching;
+    command.add_option("--level", texts["level"], help_of_level(purpose_))
         ->type_name("UINT")
         ->check(count());
     command.add_option("--channel", texts["channel"], "Channel of a store, from 0")
@@ -80,14 +99,22 @@ void SourceOptions::add_streaming_to(CLI::App& command) {
         ->check(count());
     command
         .add_option("--memory", memory,
-                    "Memory limit of the whole program while a store is touched (without it, 512MB "
-                    "for samples). A plain file is then read while it is touched")
+                    touches ? "Memory limit of the whole program while a store is touched (without "
+                              "it, 512MB for samples). A plain file is then read while it is "
+                              "touched"
+                            : "Memory limit. Chunks of a store may take half of it while they are "
+                              "unpacked (without it, a quarter of this machine's memory)")
         ->type_name("SIZE")
         ->transform(size_in_bytes());
-    command.add_flag("--coarse-first", coarse_first,
-                     "Use a coarser level until the finer one has loaded");
-    command.add_flag("--all-times", all_times,
-                     "Play the times of a store as a sequence, each read whole at the level");
+    // A command that does not list an option still takes it, and says that it does nothing.
+    command
+        .add_flag("--coarse-first", coarse_first,
+                  "Use a coarser level until the finer one has loaded")
+        ->group(touches ? "Options" : "");
+    command
+        .add_flag("--all-times", all_times,
+                  "Take the times of a store as a sequence, each read whole at the level")
+        ->group(purpose_ == For::conversion ? "" : "Options");
     command.add_option("--cache", cache_folder, "Folder that keeps downloaded data")
         ->type_name("FOLDER");
     command.add_option("--cache-size", cache_bytes, "Size limit of this folder (4GB)")
@@ -95,6 +122,16 @@ void SourceOptions::add_streaming_to(CLI::App& command) {
         ->transform(size_in_bytes());
     command.add_flag("--forbidden-is-missing", forbidden_is_missing,
                      "Treat chunks for which the server answers 403 as not stored, as with S3");
+}
+
+void SourceOptions::warn_of_no_effect(const run::Source& source) const {
+    app::warn_of_no_effect(*command_, run::without_effect(source));
+    if (purpose_ == For::touching || !std::holds_alternative<run::StoreSource>(source.from)) return;
+    app::warn_of_no_effect(*command_, {"--coarse-first"}, "no hand touches the volume");
+}
+
+void SourceOptions::warn_of_no_effect(const run::LoadedVolume& volume) const {
+    app::warn_of_no_effect(*command_, run::without_effect(volume));
 }
 
 run::Source SourceOptions::source() const {

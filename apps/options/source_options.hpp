@@ -28,23 +28,27 @@ struct SourceOptions {
     std::uint64_t cache_bytes = std::uint64_t{4} << 30;
     bool quiet = false;
 
+    /// What a command does with a store.
+    enum class For { touching, description, surfaces, conversion };
+
     /// Declares VOLUME and its options on a command. An `optional` VOLUME has a default.
-    void add_to(CLI::App& command, bool optional = false);
-    /// Declares those of volumes that are read as they are felt. Called by add_to().
-    void add_streaming_to(CLI::App& command);
+    void add_to(CLI::App& command, For purpose = For::touching, bool optional = false);
     /// VOLUME; empty where it was not given and has no default.
     std::string& volume() { return texts["volume"]; }
     const std::string& name() const { return texts.at("volume"); }
+    bool has_level() const { return texts.contains("level") && !texts.at("level").empty(); }
     /// Once the command line has been read. Throws std::invalid_argument.
     run::Source source() const;
     /// Warn on standard error of options that do nothing for this source or volume. The latter
     /// also knows the options of playback (RunOptions).
-    void warn_of_no_effect(const auto& source_or_volume) const {
-        app::warn_of_no_effect(*command_, run::without_effect(source_or_volume));
-    }
+    void warn_of_no_effect(const run::Source& source) const;
+    void warn_of_no_effect(const run::LoadedVolume& volume) const;
 
   private:
+    void add_store_options(CLI::App& command);
+
     const CLI::App* command_ = nullptr;
+    For purpose_ = For::touching;
 };
 
 /// --isovalue, --solid, --field and --background.

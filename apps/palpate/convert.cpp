@@ -172,7 +172,6 @@ void convert(const CLI::App& command, const ConvertWords& words) {
         const std::string why = io::why_not_compressed(words.output);
         if (!why.empty()) warn_of_no_effect(command, {"--compress"}, why);
     }
-    warn_of_no_effect(command, {"--coarse-first"}, "each part is read once");
     const Taken taken = opened(words);
     const auto levels = static_cast<int>(taken.store->info().levels.size());
     if (taken.level >= levels) {
@@ -197,7 +196,7 @@ void add_convert(CLI::App& app) {
         "command\n"
         "continues after an interruption.\n\n"
         "Example:\n  palpate convert head.nrrd head.zarr --ome-version 0.4");
-    words->source.add_to(*command);
+    words->source.add_to(*command, SourceOptions::For::conversion);
     command->add_option("OUT", words->output, "Folder *.zarr, or file to write")
         ->type_name(file_of(io::written_extensions()))
         ->required();

@@ -100,7 +100,7 @@ std::string report_html(const Demo& demo, const std::string& images) {
 }  // namespace
 
 void add_demo_options(CLI::App& command, DemoOptions& options) {
-    options.source.add_to(command, true);
+    options.source.add_to(command, SourceOptions::For::touching, true);
     add_field_options(command, options.field);
     options.render.add_to(command, options.source.memory);
     command.option_defaults()->always_capture_default();  // of all that follow

@@ -27,7 +27,7 @@ struct ExtractOptions {
 void extract(const CLI::App& command, const ExtractOptions& options) {
     (void)io::mesh_format_from(options.output);  // refuse before the work, not after it
     check_outputs({options.source.name()}, {options.output});
-    const run::LoadedVolume loaded = load_for_terminal(options.source);
+    const run::LoadedVolume loaded = load_whole(options.source);
     const Field field = run::make_field(loaded.volume, options.field);
     if (field.interpolation() == Interpolation::linear) {
         warn_of_no_effect(command, {"--tolerance"}, "the facets of the linear field are exact");
@@ -71,7 +71,7 @@ void add_extract(CLI::App& app) {
     command->footer(
         "The mesh is the surface that the proxy touches. Coordinates are LPS, in mm.\n\nExample:\n "
         " palpate extract head.nrrd --isovalue 99.5 --output skull.ply");
-    options->source.add_to(*command);
+    options->source.add_to(*command, SourceOptions::For::surfaces);
     add_field_options(*command, options->field);
     command->add_option("-o,--output", options->output, "Mesh to write")
         ->type_name("FILE.{ply,stl,obj,vtp}")

@@ -232,7 +232,7 @@ void add_info(CLI::App& app) {
     command->footer(
         "Examples:\n  palpate info head.nrrd\n  palpate info dicom-folder --json\n"
         "  palpate info samples.raw --dims 256x256x113 --type uint16 --spacing 1,1,2");
-    options->add_to(*command);
+    options->add_to(*command, SourceOptions::For::description);
     command->add_flag("--json", *json, "Print JSON");
     command->callback([options, json] {
         run::LoadedVolume loaded = load_for_terminal(*options);

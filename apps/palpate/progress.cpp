@@ -63,6 +63,33 @@ run::LoadedVolume load_for_terminal(const run::Source& source, bool quiet) {
     return loaded;
 }
 
+run::LoadedVolume load_whole(const SourceOptions& options) {
+    run::LoadedVolume loaded = load_for_terminal(options);
+    if (!loaded.streamed) return loaded;
+    if (!options.has_level()) {
+        if (!options.quiet) {
+            say("palpate: note: {}: its surface is that of this overview (--level N takes a level "
+                "as a whole)\n",
+                loaded.name);
+        }
+        return loaded;
+    }
+    const auto& [store, loader, opened] = *loaded.streamed;
+    const Geometry& grid = stream::level_of(*store, loader.level).geometry;
+    const double bytes =
+        static_cast<double>(sample_count(grid)) * static_cast<double>(size_of(store->info().type));
+    if (options.memory && bytes > static_cast<double>(*options.memory)) {
+        throw io::InputError(
+            fmt::format("{}: level {} needs {:.0f} MB; allow more memory, or take "
+                        "a coarser one",
+                        loaded.name, loader.level, bytes / 1e6));
+    }
+    ProgressBar bar("reading " + loaded.name, options.quiet);
+    loaded.volume =
+        stream::read_level(*store, loader.level, [&](double fraction) { bar.at(fraction); });
+    return loaded;
+}
+
 std::string dequantize_suggestion(const std::optional<filters::Terraces>& terraces) {
     if (!terraces || !terraces->wide()) return {};
     const bool is_usual = terraces->rounds() == filters::DequantizeOptions{}.rounds;

@@ -34,6 +34,9 @@ class ProgressBar {
 /// quiet. Throws as run::load(), and Interrupted.
 run::LoadedVolume load_for_terminal(const run::Source& source, bool quiet);
 run::LoadedVolume load_for_terminal(const SourceOptions& options);
+/// The same with the samples of the level of a store that the options choose. Without a level, an
+/// overview and a note. Throws io::InputError for a level larger than the memory.
+run::LoadedVolume load_whole(const SourceOptions& options);
 
 /// "--dequantize: why"; empty where it is not worth it.
 std::string dequantize_suggestion(const std::optional<filters::Terraces>& terraces);

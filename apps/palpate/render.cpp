@@ -151,7 +151,7 @@ std::string summary_of(const pictures::PictureScene& scene, const pictures::Cont
 }
 
 Drawing drawing_of(const RenderPictureOptions& options) {
-    const run::LoadedVolume loaded = load_for_terminal(options.source);
+    const run::LoadedVolume loaded = load_whole(options.source);
     const Field field = run::make_field(loaded.volume, options.field);
     const std::vector<double> levels = levels_of(options, loaded, field);
     const pictures::Contact contact = contact_of(options, field, levels.front());
@@ -210,7 +210,7 @@ void add_render(CLI::App& app) {
         "--isovalue.\n\nExamples:\n"
         "  palpate render head.nrrd --isovalue 34.5 --isovalue 99.5 --output head.png\n"
         "  palpate render synthetic:torus --hip 0,-20,8 --zoom 3 --output contact.png");
-    options->source.add_to(*command);
+    options->source.add_to(*command, SourceOptions::For::surfaces);
     command
         ->add_option(
             "-i,--isovalue", options->isovalues,

@@ -53,7 +53,7 @@ std::uint64_t checked_bytes(std::span<const std::int64_t> sizes, std::size_t byt
         throw Failure("its " + text_of(sizes) + " samples need " + gigabytes(bytes) +
                       " of memory, the limit is " +
                       gigabytes(static_cast<double>(request.memory_limit)) +
-                      "; crop or downsample it");
+                      "; allow more memory, or crop or downsample it");
     }
     return static_cast<std::uint64_t>(bytes);
 }

@@ -88,6 +88,21 @@ TEST(Extract, every_format_has_the_same_triangles) {
     EXPECT_EQ(support::bytes_of(folder / "A.PLY"), support::bytes_of(folder / "a.ply"));
 }
 
+TEST(Extract, of_a_store_takes_the_level_that_is_asked_for) {
+    const ScratchFolder folder;
+    const std::string ball = "synthetic:sphere:132x128x128";  // more samples than an overview has
+    ASSERT_EQ(palpate(folder, "convert -q " + ball + " ball.zarr").status, 0);
+    ASSERT_EQ(palpate(folder, "extract -q " + ball + " -i 50% -o whole.ply").status, 0);
+    const std::string extract = "extract ball.zarr -i 50% -o ";
+    EXPECT_EQ(palpate(folder, extract + "fine.ply --level 0").status, 0);
+    EXPECT_EQ(support::bytes_of(folder / "fine.ply"), support::bytes_of(folder / "whole.ply"));
+    const Outcome overview = palpate(folder, extract + "overview.ply");
+    EXPECT_EQ(overview.status, 0);
+    EXPECT_TRUE(contains(overview.err, "of this overview")) << overview.err;
+    expect_failure(palpate(folder, extract + "none.ply -q --level 0 --memory 2MB"), 3,
+                   "allow more memory");
+}
+
 TEST(Extract, refuses_unknown_extensions_before_the_work) {
     const ScratchFolder folder;
     for (const std::string name : {"a.foo", "a", "-", "a.ply.gz"}) {

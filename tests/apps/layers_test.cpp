@@ -184,6 +184,19 @@ void put_mixed(const ScratchFolder& folder) {
     put_bytes(folder / "mixed.json", text);
 }
 
+TEST(LabelsOption, count_in_the_memory_of_the_program) {
+    const ScratchFolder folder;
+    const std::string convert = "convert -q synthetic:sphere:";
+    ASSERT_EQ(palpate(folder, convert + "32x32x32 ball.zarr").status, 0);
+    ASSERT_EQ(palpate(folder, convert + "230x220x220 large.nrrd --compress").status, 0);
+    ASSERT_EQ(palpate(folder, convert + "230x220x220 large.zarr").status, 0);
+    const std::string touch =
+        "touch ball.zarr --device simulated:hand=hold --unpaced --seconds 0.01 --memory 40MB ";
+    for (const char* labels : {"large.nrrd", "large.zarr"}) {
+        expect_failure(palpate(folder, touch + "--labels " + labels), 3, "allow more memory");
+    }
+}
+
 TEST(LabelsOption, feels_levels_where_no_label_is_given) {
     const ScratchFolder folder;
     put_stroke(folder);

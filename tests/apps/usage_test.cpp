@@ -6,6 +6,17 @@ namespace {
 
 constexpr const char* commands[] = {"info", "replay", "extract", "render", "demo", "doctor"};
 
+TEST(Usage, the_help_of_a_command_says_what_this_command_does) {
+    const ScratchFolder folder;
+    for (const char* command : {"convert", "info", "extract", "render"}) {
+        const std::string help = palpate(folder, std::string(command) + " --help").out;
+        EXPECT_FALSE(contains(help, "while it is touched")) << command;
+        EXPECT_FALSE(contains(help, "--coarse-first")) << command;
+    }
+    EXPECT_FALSE(contains(palpate(folder, "convert --help").out, "--all-times"));
+    EXPECT_TRUE(contains(palpate(folder, "touch --help").out, "--coarse-first"));
+}
+
 TEST(Usage, every_command_has_help_with_an_example) {
     const ScratchFolder folder;
     const Outcome all = palpate(folder, "--help");

@@ -1,7 +1,10 @@
 // Layers in a live run: the isovalue that waits for their end.
 #include <gtest/gtest.h>
 
+#include "palpate/run/labels.hpp"
+#include "palpate/stream/convert.hpp"
 #include "run/run_support.hpp"
+#include "support/edits.hpp"
 #include "support/scratch_folder.hpp"
 
 namespace palpate::run {
@@ -63,6 +66,25 @@ TEST_F(RunWithLayers, recordings_that_begin_and_end_meanwhile_do_not_change_it) 
     live.send(command::UseLayers{nullptr});
     live.record(scratch.path() / "b.csv");
     EXPECT_TRUE(felt(60));
+}
+
+/// Labels 1 and 3 in turn along x, so that each mean of two is 2.
+Volume turns(const Geometry& geometry) {
+    std::vector<std::uint8_t> samples(static_cast<std::size_t>(sample_count(geometry)));
+    for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = i % 2 == 0 ? 1 : 3;
+    return {geometry, std::move(samples)};
+}
+
+TEST(LabelsOfAStore, are_read_whole_because_the_mean_of_two_labels_is_none) {
+    const support::ScratchFolder folder;
+    const Volume labels = turns(support::grid({160, 128, 128}));
+    ASSERT_GT(sample_count(labels.geometry()), stream::overview_samples);
+    const std::string path = (folder / "labels.zarr").string();
+    stream::convert_to_zarr(*stream::store_of(labels, "labels"), 0, path, {});
+    EXPECT_TRUE(support::same_bits(load_labels(path, 0).volume, labels));
+    EXPECT_EQ(layers_by_label(load_labels(path, 0)).layers.layers.size(), 2U);
+    EXPECT_THROW((void)layers_by_label(load(source_from({{"volume", path}}))),
+                 std::invalid_argument);
 }
 
 TEST_F(RunWithLayers, the_other_solid_side_ends_them_and_keeps_the_isovalue) {

@@ -54,6 +54,8 @@ struct Source {
     int smooth = 0;                        ///< passes of the binomial kernel, see smoothed()
     int dequantize = 0;      ///< before that: rounds, see filters::dequantized(). 0: none
     bool prefilter = false;  ///< after all that, see sharpened()
+    /// [bytes] Limit for the samples of a file that is read whole. 0: the memory of this machine.
+    std::uint64_t most_bytes = 0;
 };
 
 /// As a user writes it: "head.nrrd", "synthetic:torus", "live:frames.shm".
