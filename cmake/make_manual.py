@@ -102,9 +102,8 @@ def values_of(lines):
     for entry in entries:
         head, _, about = entry.partition("  ")
         names, _, kind = head.partition(" ")
-        names = [re.sub(r"\{.*", "", name) for name in names.split(",")]
-        if kind and not any("{" in name for name in head.split(" ")[0].split(",")):
-            values.update({name: Values(kind, about) for name in names})
+        if kind:
+            values.update({name: Values(kind, about) for name in names.split(",")})
     return values
 
 

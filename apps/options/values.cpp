@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
 #include "apps/options/exit_status.hpp"
@@ -96,10 +97,31 @@ std::vector<std::string> command_names(const CLI::App& app) {
     return names;
 }
 
+/// Empty if none is near, and for a word of hyphens.
+std::string near_to(const std::string& word, const std::vector<std::string>& names) {
+    return word.find_first_not_of('-') == std::string::npos ? "" : nearest_name(word, names);
+}
+
 std::string meant(const std::string& word, const std::vector<std::string>& names) {
-    if (word.find_first_not_of('-') == std::string::npos) return {};
-    const std::string near = nearest_name(word, names);
+    const std::string near = near_to(word, names);
     return near.empty() ? near : ": did you mean " + near + "?";
+}
+
+/// For an option that only other commands have.
+std::string of_others(const std::string& word, const CLI::App& app) {
+    std::vector<std::string> all, having;
+    const auto commands = app.get_subcommands([](const CLI::App*) { return true; });
+    for (const CLI::App* command : commands) {
+        std::ranges::copy(option_names(*command), std::back_inserter(all));
+    }
+    const std::string near = near_to(word, all);
+    // Among so many options, one is always near.
+    if (near.empty() || !(near.starts_with(word) || word.starts_with(near))) return {};
+    for (const CLI::App* command : commands) {
+        if (command->get_option_no_throw(near)) having.push_back(command->get_name());
+    }
+    return having.empty() ? ""
+                          : fmt::format(": {} is an option of {}", near, fmt::join(having, ", "));
 }
 
 /// For an option without its value, or with more than one.
@@ -212,9 +234,11 @@ std::string complaint(const CLI::App& app, const CLI::ParseError& error) {
         if (word.size() > 1 && word[0] == '-' && !has_end) {
             const std::string name = word.substr(0, word.find('='));
             const bool is_before = command != &app && command->get_option_no_throw(name);
+            const std::string near = meant(name, option_names(*command));
             text = is_before ? name + " is an option of " + command->get_name() +
                                    ": write it after " + command->get_name()
-                             : "there is no option " + word + meant(name, option_names(*command));
+                             : "there is no option " + word +
+                                   (near.empty() ? of_others(name, app) : near);
         } else if (command == &app) {
             text = "there is no command '" + word + "'" + meant(word, command_names(app));
         } else {

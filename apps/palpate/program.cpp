@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <exception>
 #include <iostream>
+#include <memory>
 #include <string>
 
 #include "apps/options/exit_status.hpp"
@@ -25,13 +26,36 @@ int finish_output() {
     return fail("standard output: could not be written", bad_output);
 }
 
+/// Help from which the manual is made.
+class HelpFormatter : public CLI::Formatter {
+  public:
+    /// At least two spaces stand between an option and its text.
+    std::string make_option(const CLI::Option* option, bool is_positional) const override {
+        std::string entry =
+            "  " + make_option_name(option, is_positional) + make_option_opts(option);
+        const std::size_t width = get_column_width();
+        entry += entry.size() + 2 > width ? "\n" + std::string(width, ' ')
+                                          : std::string(width - entry.size(), ' ');
+        return entry + make_option_desc(option) + "\n";
+    }
+    /// CLI11 writes a flag that may have a value as --flag{default}.
+    std::string make_option_name(const CLI::Option* option, bool is_positional) const override {
+        std::string name = CLI::Formatter::make_option_name(option, is_positional);
+        if (const auto at = name.find('{'); at != std::string::npos) {
+            name = name.substr(0, at) + "[=" + name.substr(at + 1, name.size() - at - 2) + "]";
+        }
+        return name;
+    }
+};
+
 int read_and_run(int argc, char** argv, const std::function<void(CLI::App&)>& add_commands) {
     CLI::App app(
         "Touch the surfaces inside volumetric data.\n\nVOLUME is a file (NRRD, MetaImage, NIfTI, "
         "TIFF, VTI, DICOM, raw), a folder with a DICOM series or a TIFF stack,\nor "
         "synthetic:NAME[:WxHxD].",
         "palpate");
-    app.allow_windows_style_options(false);  // a path may begin with a slash there, too
+    app.formatter(std::make_shared<HelpFormatter>());  // also of the commands that are added
+    app.allow_windows_style_options(false);            // a path may begin with a slash there, too
     app.set_version_flag("--version", "palpate " PALPATE_VERSION);
     app.require_subcommand(1);
     app.footer(

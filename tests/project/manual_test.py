@@ -49,6 +49,9 @@ for command in commands:
     missing = [option for option in found
                if not re.search(rf"^\.B .*{option}", entries, re.MULTILINE)]
     assert not missing, f"{command}: {missing} are not in the manual"
+    bare = re.findall(r"^\.B (.*)\n\.", page, re.MULTILINE)
+    assert not bare, f"{command}: {bare} have no text of their own"
+    assert not re.search(r"^\.B \S*\{", page, re.MULTILINE), f"{command}: the value of a flag stands behind [="
     offered = completed(f"palpate {command} -")
     assert found == offered, f"{command}: {found ^ offered}"
 
