@@ -38,14 +38,21 @@ void bind_filters(py::module_& module) {
     bind_terraces(module);
     module.def(
         "smoothed",
-        [](const Volume& volume, int passes) { return smoothed(volume, passes, ctrl_c()); },
-        py::arg("volume"), py::arg("passes") = 1, Unlocked(),
+        [](const Volume& volume, int passes, const ProgressFunction& progress) {
+            const GilReleased unlocked;
+            return smoothed(volume, passes, progress_of(progress));
+        },
+        py::arg("volume"), py::arg("passes") = 1, py::arg("progress") = py::none(),
         "The volume smoothed with the binomial kernel (1 2 1)/4 along each axis, `passes`\n"
         "times (0 to 64), as float32.");
     module.def(
-        "sharpened", [](const Volume& volume) { return sharpened(volume, ctrl_c()); },
-        py::arg("volume"), Unlocked(),
-        "Samples less an eighth of their discrete Laplacian, as float32: thin structures\n"
+        "sharpened",
+        [](const Volume& volume, const ProgressFunction& progress) {
+            const GilReleased unlocked;
+            return sharpened(volume, progress_of(progress));
+        },
+        py::arg("volume"), py::arg("progress") = py::none(),
+        "Samples minus an eighth of their discrete Laplacian, as float32: thin structures\n"
         "keep their height in the smooth field.");
     module.def(
         "level_of", [](const Volume& volume) { return filters::level_of(volume, ctrl_c()); },

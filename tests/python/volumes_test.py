@@ -221,7 +221,8 @@ def test_what_cannot_be_read_or_written_raises_errors_by_kind(tmp_path):
         palpate.load("synthetic:nothing")
 
 
-def test_what_progress_raises_ends_the_work():
+@pytest.mark.parametrize("work", [palpate.dequantized, palpate.smoothed, palpate.sharpened])
+def test_what_progress_raises_ends_the_work(work):
     class Enough(Exception):
         pass
 
@@ -229,7 +230,7 @@ def test_what_progress_raises_ends_the_work():
         raise Enough
 
     with pytest.raises(Enough):
-        palpate.dequantized(palpate.scene("torus:48x48x48", "uint8").volume, progress=progress)
+        work(palpate.scene("torus:48x48x48", "uint8").volume, progress=progress)
 
 
 def test_a_pickled_volume_is_the_same():
