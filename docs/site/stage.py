@@ -14,6 +14,7 @@ from pathlib import Path
 
 PAGES = ("README.md", "CONTRIBUTING.md", "SECURITY.md", "CHANGELOG.md", "data/README.md")
 LINK = re.compile(r"(?<=\]\()([^)\s#]+)")
+FENCED = re.compile(r"(^```.*?^```$)", re.MULTILINE | re.DOTALL)  # where a lambda of C++ looks like a link
 TOUCH = """
 <p><a class="touch-here" href="touch/page/index.html">Touch a CT head here, in your browser</a></p>
 """
@@ -127,7 +128,9 @@ class Site:
                 return link
             self.shown.add(path)
             return link.rstrip("/") + ("/index.md" if path.is_dir() else ".md")
-        return for_markdown(LINK.sub(target, page.read_text(encoding="utf-8")))
+        parts = FENCED.split(page.read_text(encoding="utf-8"))
+        parts[::2] = (LINK.sub(target, part) for part in parts[::2])
+        return for_markdown("".join(parts))
 
     def show(self, path):
         relative = path.relative_to(self.root)

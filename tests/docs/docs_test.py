@@ -125,6 +125,10 @@ class Stage(Folder):
         with self.assertRaisesRegex(SystemExit, "one.md: links to ../gone.cpp"):
             self.site(one="[a](../gone.cpp)\n")
 
+    def test_code_has_no_links(self):
+        text = "# one\n\n```cpp\nauto f = [&](const int& a) { return a; };\n```\n\n[two](two.md)\n"
+        self.assertEqual((self.site(one=text, two="# two\n") / "docs/one.md").read_text(), text)
+
     def test_a_page_that_the_navigation_lacks_is_found(self):
         with self.assertRaisesRegex(SystemExit, "lacks docs/two.md"):
             self.site(left_out="two", one="# one\n", two="# two\n")
