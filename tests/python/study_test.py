@@ -87,3 +87,17 @@ def test_wrong_names_and_fields_are_refused_before_anything_runs(client, motion,
     with pytest.raises(palpate.InputError, match="gone.nrrd"):
         study(client, str(tmp_path / "gone.nrrd"), *motion, {"a": {}}, str(tmp_path / "out"))
     assert not list(tmp_path.rglob("*.npz"))
+
+
+@pytest.mark.parametrize("written, read", [("v.nrrd", "v.nrrd"), ("v.nhdr", "v.nhdr"), ("v.mhd", "v.mhd"), ("v_01.nrrd", "v_%02d.nrrd")])
+def test_a_file_that_changed_is_read_again_by_the_same_workers(client, tmp_path, written, read):
+    time, position = numpy.arange(50) / 1000, numpy.linspace((-20, 0, 0), (-2, 0, 0), 50)
+    for level in (100, 150):
+        samples = numpy.where(palpate.scene("sphere:16x16x16").volume.array > level, 200, 0).astype("uint8")
+        if level == 150 and written in ("v.nhdr", "v.mhd"):  # the header stays as it was
+            (tmp_path / "v.raw").write_bytes(samples.tobytes())
+        else:
+            palpate.write(palpate.Volume(samples, origin=(-8, -8, -8)), tmp_path / written)
+        made = study(client, tmp_path / read, 100, time, position, {"one": {}}, tmp_path / "out")["one"]
+        one = palpate.replay(palpate.Field(palpate.load(tmp_path / read).volume), 100, time, position)
+        assert one.constrained.any() and same(made, one)

@@ -23,10 +23,25 @@ from .whole_files import make_folder, write_whole
 
 
 @functools.lru_cache(maxsize=1)
-def _field(source, options):
-    """A worker feels the same volume again and again."""
+def _field(source, options, files):
+    """A worker feels the same volume again and again, until its files change (`files` tells them)."""
     loading, feeling = pickle.loads(options)
     return Field(load(source, **loading).volume, **feeling)
+
+
+def _files_of(source):
+    """A source's files: those of a numbered series, and those that a header without samples names."""
+    folder, name = os.path.split(source)
+    number = re.search(r"%(0\d+)?d", name)
+    if number and os.path.isdir(folder):
+        fits = re.compile(re.escape(name[:number.start()]) + r"\d+" + re.escape(name[number.end():]))
+        return [os.path.join(folder, one) for one in sorted(os.listdir(folder)) if fits.fullmatch(one)]
+    if not name.lower().endswith((".nhdr", ".mhd")) or not os.path.isfile(source):
+        return [source]
+    with open(source, encoding="utf-8", errors="replace") as file:
+        lines = file.read(1 << 20).splitlines()
+    named = (os.path.join(folder, re.split("[:=]", line)[-1].strip()) for line in lines)
+    return [source, *filter(os.path.isfile, named)]
 
 
 def _write(path, key, trace):
@@ -50,14 +65,14 @@ def _read(path):
                               nested_layers=rest["nested_layers"])
 
 
-def _replay(source, options, isovalue, motion, folder, work):
+def _replay(source, options, files, isovalue, motion, folder, work):
     name, key, setup = work
     path = Path(folder) / f"{name}.npz"
     before = _read(path)
     if before and before[0] == key:
         return True
     time, position, orientation = motion
-    trace = replay(_field(source, options), isovalue, time, position, orientation_xyzw=orientation,
+    trace = replay(_field(source, options, files), isovalue, time, position, orientation_xyzw=orientation,
                    setup=setup)
     _write(path, key, trace)
     return False
@@ -80,14 +95,17 @@ def study(client: Client, source: Name, isovalue: Union[float, str], time: Any, 
     for name in setups:
         if not re.fullmatch(r"\w[\w.+=,-]*", name):
             raise ValueError(f"{name!r}: names of setups become names of files: letters, digits and _.+=,-")
+    files = []
     if "://" not in source and not source.startswith(("synthetic:", "live:")):
         source = os.path.abspath(source)
+        files = [(file, seen(file)) for file in _files_of(source)]
     made = {name: setup if isinstance(setup, RenderSetup) else RenderSetup(**setup)
             for name, setup in setups.items()}
     motion = [numpy.ascontiguousarray(a, dtype=float) if a is not None else None
               for a in (time, position, orientation_xyzw)]
     options = pickle.dumps((loading or {}, field or {}))
-    same = hashlib.sha256(pickle.dumps(("xyzw", __version__, source, seen(source), isovalue, options)))
+    same = hashlib.sha256(pickle.dumps(("xyzw", __version__, source, files, isovalue, options)))
+    files = same.hexdigest()
     for array in motion:
         same.update(b"none" if array is None else array.tobytes())
     work = []
@@ -98,6 +116,6 @@ def study(client: Client, source: Name, isovalue: Union[float, str], time: Any, 
     check_workers(client)
     folder = os.path.abspath(out)
     make_folder(Path(folder))
-    one = functools.partial(_replay, source, options, isovalue, motion, folder)
+    one = functools.partial(_replay, source, options, files, isovalue, motion, folder)
     each_piece(client, "study", one, work, progress)
     return {name: _read(Path(folder) / f"{name}.npz")[1] for name in setups}
