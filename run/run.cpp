@@ -306,6 +306,7 @@ std::string Run::device_problem() const {
 
 void Run::send(const Command& asked) {
     Servo& servo = started_servo();
+    if (!running_) throw WrongState("the run has stopped, so it carries out no more commands");
     const Command command = placed_beside(asked, data_->loaded());
     check(command, settings_, kind_of(field_));
     const std::int64_t after = last_tick();
@@ -426,6 +427,9 @@ void Run::record_together(std::span<Run* const> runs, const std::filesystem::pat
         }
         if (std::ranges::count(runs, run) > 1) {
             throw std::invalid_argument("a run is recorded once, not as two hands");
+        }
+        if (run->started() && !run->running_) {
+            throw WrongState("the run has stopped, so there is nothing more to record");
         }
         if (heads.empty()) data.check_recording();
         heads.push_back(recording_head(run->session_now(), run->device_->info(),

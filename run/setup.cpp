@@ -124,6 +124,14 @@ double isovalue_of(const LoadedVolume& loaded, const Setup& setup, const OnProgr
     return isovalue_of(loaded, setup.field, progress);
 }
 
+std::string level_warning(const Field& field, double isovalue) {
+    const std::string warning = isovalue_warning(field, isovalue);
+    if (warning.empty()) return warning;
+    const Samples& samples = field.samples();
+    return "isovalue " + number_text(isovalue) + " (data " + number_text(samples.minimum()) +
+           " to " + number_text(samples.maximum()) + "): " + warning;
+}
+
 std::string layers_warning(const io::LayersFile& file, const LoadedVolume& loaded) {
     if (file.layers.labels) {
         std::string warning =

@@ -4,6 +4,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <stdexcept>
 
 #include "palpate/names.hpp"
 
@@ -26,6 +28,16 @@ Mat3 axes_facing(Facing facing) {
 
 const char* name_of(DeviceStatus status) {
     return enum_name(status);
+}
+
+void check(const DeviceInfo& info) {
+    if (!(info.workspace_high.array() > info.workspace_low.array()).all()) {
+        throw std::invalid_argument("workspace_high has to be above workspace_low");
+    }
+    if (!(info.stiffness >= 0) || std::isinf(info.stiffness)) {
+        throw std::invalid_argument("stiffness [N/mm]: has to be finite and at least 0");
+    }
+    if (info.buttons < 0 || info.buttons > 32) throw std::invalid_argument("buttons: 0 to 32");
 }
 
 DeviceTransform fit_workspace(const Geometry& geometry, const DeviceInfo& device, Facing facing) {

@@ -46,7 +46,9 @@ std::string nearest_name(std::string_view word, std::span<const std::string> nam
     for (const std::string& name : names) {
         const std::string small = small_letters(name);
         const bool begins = meant.size() > 1 && small.starts_with(meant);
-        const std::size_t changes = begins ? 1 : changes_between(meant, small);
+        const std::string last = small.substr(small.rfind('.') + 1);  // of force.stiffness
+        const std::size_t changes =
+            begins ? 1 : std::min(changes_between(meant, small), changes_between(meant, last));
         if (changes >= std::min(fewest, std::max(meant.size(), small.size()))) continue;
         fewest = changes;
         nearest = name;

@@ -7,21 +7,22 @@
 #include <string>
 #include <vector>
 
+#include "palpate/names.hpp"
+
 namespace palpate {
 namespace {
 
 void check_threshold(double threshold) {
     if (!(threshold >= 0)) {
         throw std::invalid_argument("the penetration threshold must be at least 0 mm, not " +
-                                    std::to_string(threshold));
+                                    number_text(threshold));
     }
 }
 
 void check_range(const DensityRange& range) {
     if (!(range.low <= range.high)) {
         throw std::invalid_argument("a range of interest needs low <= high, not " +
-                                    std::to_string(range.low) + " to " +
-                                    std::to_string(range.high));
+                                    number_text(range.low) + " to " + number_text(range.high));
     }
 }
 

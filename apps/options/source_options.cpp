@@ -184,11 +184,8 @@ void add_side_options(CLI::App& command, run::FieldSetup& field) {
 }
 
 void warn_of_isovalue(const Field& field, double isovalue) {
-    const std::string warning = isovalue_warning(field, isovalue);
-    if (warning.empty()) return;
-    const Samples& samples = field.samples();
-    say("palpate: warning: isovalue {} (data {} to {}): {}\n", isovalue, samples.minimum(),
-        samples.maximum(), warning);
+    const std::string warning = run::level_warning(field, isovalue);
+    if (!warning.empty()) say("palpate: warning: {}\n", warning);
 }
 
 void warn_of_layers(const io::LayersFile& layers, const run::LoadedVolume& loaded) {

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <mutex>
+#include <string>
 #include <vector>
 
 #include "bindings/c/status.hpp"
@@ -35,6 +36,7 @@ struct palpate_run {
     mutable std::mutex mutex;
     std::shared_ptr<palpate::run::Data> data;
     std::unique_ptr<palpate::run::Run> run;
+    std::string own_device;  ///< its name; empty: none
 };
 
 namespace palpate::c {

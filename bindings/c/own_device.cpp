@@ -53,18 +53,14 @@ void check(const palpate_own_device& asked, const DeviceInfo& info) {
     if (!(asked.rate >= 50 && asked.rate <= 8000)) {
         throw std::invalid_argument("own.rate: 50 to 8000 Hz, or 0 for 1000");
     }
-    if (!(info.workspace_high.array() > info.workspace_low.array()).all()) {
-        throw std::invalid_argument("own.workspace_high has to be above own.workspace_low");
-    }
     if (!(asked.maximum_force > 0)) {
         throw std::invalid_argument(
             "own.maximum_force: give what the device can take [N], above 0");
     }
-    if (!(info.stiffness >= 0) || std::isinf(info.stiffness)) {
-        throw std::invalid_argument("own.stiffness [N/mm]: has to be finite and at least 0");
-    }
-    if (asked.buttons < 0 || asked.buttons > 32) {
-        throw std::invalid_argument("own.buttons: 0 to 32");
+    try {
+        palpate::check(info);
+    } catch (const std::invalid_argument& error) {
+        throw std::invalid_argument(std::string("own.") + error.what());
     }
     palpate::check(info.limits);
 }

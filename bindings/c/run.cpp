@@ -8,6 +8,7 @@
 #include "bindings/c/own_device.hpp"
 #include "bindings/c/structs.hpp"
 #include "palpate/devices/error.hpp"
+#include "palpate/run/no_effect.hpp"
 
 namespace palpate::c {
 namespace {
@@ -28,7 +29,9 @@ void choose_device(const palpate_run_options& asked, run::Setup& setup) {
             return std::make_unique<OwnDevice>(named);
         };
     }
-    if (asked.device) setup.device = devices::parse_device(asked.device);
+    if (asked.device && setup.device.name != asked.device) {  // own names may have a colon
+        setup.device = devices::parse_device(asked.device);
+    }
 }
 
 void choose_button(const char* member, std::int32_t number, run::ButtonSetup& button) {
@@ -43,6 +46,8 @@ run::Setup setup_from(const palpate_run_options& asked) {
     setup.render = render_setup(render);
     setup.render.force.start_below = run::live_start_below;
     if (render.has_isovalue) setup.field.isovalue = render.isovalue;
+    run::refuse_without_effect(run::without_effect(setup.render),
+                               {{"isovalue", render.has_isovalue != 0}});
     setup.facing = one_of<Facing>(asked.facing, "facing");
     setup.real_time = asked.no_real_time == 0;
     choose_button("clutch_button", asked.clutch_button, setup.buttons.clutch);
@@ -99,6 +104,7 @@ extern "C" PALPATE_API palpate_status palpate_run_create(palpate_data* data,
         made->data = given(data, "data").data;
         const OnProgress progress = progress_of(asked, "the run was cancelled");
         made->run = std::make_unique<run::Run>(made->data, setup_from(asked), progress);
+        if (asked.own) made->own_device = name_of(taken(asked.own, "own"));
         if (asked.recording) made->run->record(asked.recording, progress);
         *out = made.release();
     });
@@ -177,7 +183,10 @@ extern "C" PALPATE_API palpate_status palpate_run_use_device(palpate_run* run, c
     return guarded([&] {
         if (calls_back) throw WrongState("a callback cannot change the device: use another thread");
         const auto lock = locked(run);
-        run->run->use_device(devices::parse_device(&given(device, "device")), progress_of_thread());
+        const std::string name = &given(device, "device");
+        const bool is_own = !run->own_device.empty() && name == run->own_device;
+        run->run->use_device(is_own ? devices::DeviceChoice{name, {}} : devices::parse_device(name),
+                             progress_of_thread());
         const std::string& before = run->run->left_behind();
         if (!before.empty()) throw devices::DeviceError(before + "; the run has the new device");
     });

@@ -51,7 +51,14 @@ OnProgress progress_by(int32_t (*progress)(double fraction, void* context), void
                        const char* cancelled) {
     return [=](double fraction) {
         const InCallback in_callback;
-        if (progress(fraction, context) == 0) throw Cancelled(cancelled);
+        bool goes_on = false;
+        try {
+            goes_on = progress(fraction, context) != 0;
+        } catch (const std::exception& error) {  // of a caller in C++
+            throw Cancelled(std::string("the progress function threw an exception: ") +
+                            error.what());
+        }
+        if (!goes_on) throw Cancelled(cancelled);
     };
 }
 

@@ -17,7 +17,8 @@ SAMPLES = ("IntPtr", "byte[]", "short[]", "ushort[]", "float[]")
 
 HEAD = """// Generated from palpate.h, which says what each function does: P/Invoke declarations for .NET, Mono and
 // Unity. Texts are UTF-8. Where a pointer to a struct may be null, an overload takes IntPtr.Zero. Keep
-// delegates that are given to the library in a field, so that they are not collected while it may call them.
+// delegates that are given to the library in a field, so that they are not collected while it may call them. An
+// exception that leaves a delegate ends the program: catch it there.
 using System;
 using System.Runtime.InteropServices;
 using System.Text;

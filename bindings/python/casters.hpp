@@ -84,6 +84,14 @@ auto without_gil(Work&& work) {
     return work();
 }
 
+/// A UserWarning, unless the text is empty, for the line of the caller: so many calls in Python
+/// from here. Needs the GIL. Throws what Python raises if warnings are errors.
+inline void warn(const std::string& text, int calls) {
+    if (!text.empty() && PyErr_WarnEx(PyExc_UserWarning, text.c_str(), calls) != 0) {
+        throw py::error_already_set();
+    }
+}
+
 /// In UTF-8. Throws Python's UnicodeEncodeError for halves of surrogate pairs.
 inline std::string text_from(py::handle text) {
     py::ssize_t size = 0;

@@ -48,9 +48,8 @@ Wrench straightened(ForceState& state, const Renderer& renderer, const DeviceRea
 
 py::dict closed_loop(const SharedRenderer& renderer, const std::string& text, double seconds,
                      double rate, bool straight, const ProgressFunction& progress) {
-    if (!(seconds > 0 && rate > 0 && seconds * rate < 1e9)) {
-        throw std::invalid_argument("seconds and rate have to be above 0");
-    }
+    check_numbers("rate", rate, ranges::rate);
+    check_numbers("seconds", seconds, {0, 1e8 / rate, true, "above 0, for at most 1e8 ticks"});
     Renderer own = renderer;
     ForceState state;
     std::vector<LoopTick> ticks(static_cast<std::size_t>(seconds * rate));

@@ -23,12 +23,7 @@ std::vector<py::dict> found_devices() {
 
 /// Throws std::invalid_argument.
 void turn(DeviceReading& reading, const Quaternion& to) {
-    const double length = to.norm();
-    if (!(std::abs(length - 1) <= 1e-3)) {
-        throw std::invalid_argument("orientation_xyzw must have length 1, not " +
-                                    std::string(py::str(py::float_(length))));
-    }
-    reading.orientation = to.normalized().toRotationMatrix();
+    reading.orientation = unit_quaternion("orientation_xyzw", to).toRotationMatrix();
 }
 
 }  // namespace
@@ -65,9 +60,14 @@ void bind_devices(py::module_& module) {
         .done();
     module.def("find_devices", &found_devices,
                "Looks for every kind of device: dicts with name, found, what, missing, options.");
-    module.def("fit_workspace", &fit_workspace, py::arg("geometry"), py::arg("device"),
-               py::arg("facing") = Facing::anterior,
-               "The DeviceTransform that fits the whole grid into the device's workspace.");
+    module.def(
+        "fit_workspace",
+        [](const Geometry& geometry, const DeviceInfo& device, Facing facing) {
+            check(device);
+            return fit_workspace(geometry, device, facing);
+        },
+        py::arg("geometry"), py::arg("device"), py::arg("facing") = Facing::anterior,
+        "The DeviceTransform that fits the whole grid into the device's workspace.");
 }
 
 }  // namespace palpate::python

@@ -1,6 +1,7 @@
 // Turns Palpate's exceptions into KeyboardInterrupt after Ctrl-C, otherwise into those of
 // palpate/errors.py. Those of the standard library become Python's own: invalid_argument and
 // length_error ValueError, bad_alloc MemoryError, logic_error RuntimeError.
+#include <new>
 #include <system_error>
 
 #include "bindings/python/bindings.hpp"
@@ -53,6 +54,8 @@ void bind_errors() {
             raise("DeviceError", error);
         } catch (const run::QueueFull& error) {
             raise("QueueFull", error);
+        } catch (const std::bad_alloc&) {
+            PyErr_SetString(PyExc_MemoryError, "not enough memory");
         } catch (const std::system_error& error) {
             PyErr_SetString(PyExc_OSError, error.what());
         } catch (const std::invalid_argument& error) {

@@ -125,6 +125,11 @@ void bind_explicit_surface(py::module_& module) {
 py::dict streaming_stroke(double latency, double failures, double speed, bool coarse_first,
                           double seconds, double rate, std::uint64_t memory, std::uint64_t seed,
                           const ProgressFunction& progress) {
+    check_numbers("latency_s", latency, {0, 60, false, "from 0 to 60"});
+    check_numbers("failures", failures, {0, 0.99, false, "from 0 to 0.99"});
+    check_numbers("speed_mm_s", speed, ranges::positive);
+    check_numbers("rate", rate, ranges::rate);
+    check_numbers("seconds", seconds, {0, 86400, true, "above 0, at most a day"});
     const auto felt = without_gil([&] {
         return evaluation::feel({.network = {latency, failures},
                                  .speed = speed,

@@ -34,6 +34,7 @@ struct LoadOptions {
 /// Throws std::invalid_argument for an option that this kind of source does not have.
 run::Source source_of(const fs::path& name, const LoadOptions& options) {
     run::Source source = run::source_named(name.string());
+    check_numbers("spacing", options.spacing, ranges::spacing);
     if (auto* file = std::get_if<run::FileSource>(&source.from)) {
         file->raw = options.raw;
         file->spacing = options.spacing;

@@ -112,15 +112,11 @@ void bind_layers_class(py::module_& module) {
 
 io::LayersFile layers_by_label(const run::LoadedVolume& labels,
                                const std::optional<io::LayersFile>& like,
-                               const run::LoadedVolume* beside) {
+                               const std::optional<run::LoadedVolume>& beside) {
     io::LayersFile file = run::layers_by_label(labels, like);
     if (!beside) return file;
     file.layers.labels = run::labels_beside(file.layers.labels, *beside);
-    const std::string warning =
-        run::warning_beside(file.layers.label_volume, file.layers.labels->geometry(), *beside);
-    if (!warning.empty() && PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 1) != 0) {
-        throw py::error_already_set();
-    }
+    warn(run::warning_beside(file.layers.label_volume, file.layers.labels->geometry(), *beside), 2);
     return file;
 }
 

@@ -137,6 +137,7 @@ py::dict replay(const Field& field, const io::Level& isovalue, const Doubles& ti
                 const RenderSetup& setup, bool path, bool poses, const ProgressFunction& progress) {
     const io::Trajectory trajectory = trajectory_from(time, position, orientation);
     Renderer renderer = offline_renderer(field, isovalue, setup);
+    warn_of_level(setup, field, renderer.proxy.isovalue, 3);
     if (poses && !renderer.settings.tool) {
         throw std::invalid_argument("poses are those of a tool: give one");
     }
@@ -203,7 +204,8 @@ void bind_offline(py::module_& module) {
                                   column(t.position, [](const Vec3& p) { return p; }), turns);
         },
         py::arg("path"));
-    module.def("_write_trace", &write_trace);
+    module.def("_write_trace", &write_trace, py::arg("path"), py::arg("columns"),
+               py::arg("layer_names"), py::arg("nested_layers"), py::arg("has_tool"));
     module.def(
         "_read_trace",
         [](const std::filesystem::path& file) {

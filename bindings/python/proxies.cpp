@@ -334,6 +334,10 @@ struct Rays {
         if (from.size() != to.size()) {
             throw std::invalid_argument("as many starts as ends are needed");
         }
+        const auto is_finite = [](const Vec3& end) { return end.allFinite(); };
+        if (!std::ranges::all_of(from, is_finite) || !std::ranges::all_of(to, is_finite)) {
+            throw std::invalid_argument("the ends of a ray have to be finite");
+        }
     }
 };
 

@@ -62,6 +62,7 @@ PythonDevice::PythonDevice(py::object self, DeviceInfo info, double rate)
     if (!(rate >= 1 && rate <= 8000)) {
         throw std::invalid_argument("a device in Python is asked 1 to 8000 times a second");
     }
+    check(info_);
     check(info_.limits);
     claim_.emplace(
         "the device " + std::string(py::str(py::type::of(self_).attr("__name__"))) + " (object " +

@@ -88,6 +88,13 @@ void check_range(const Setting<Owner, Value>& setting, const Value& value) {
     }
 }
 
+/// An orientation. Throws std::invalid_argument if its length is not 1, to a thousandth.
+inline Quaternion unit_quaternion(const std::string& name, const Quaternion& given) {
+    const double length = given.norm();
+    if (std::abs(length - 1) <= 1e-3) return given.normalized();
+    throw std::invalid_argument(name + " must have length 1, not " + number_text(length));
+}
+
 /// What a field is, and the range of its numbers.
 struct Ranged {
     const char* about;

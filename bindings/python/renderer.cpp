@@ -16,15 +16,22 @@ SharedRenderer live_renderer(const Field& field, const io::Level& level, const R
                              const std::optional<DeviceLimits>& limits,
                              const std::optional<DeviceTransform>& transform) {
     const RenderSetup setup = asked;  // other threads may change theirs
-    const GilReleased unlocked;
-    const double isovalue = io::level_in(field.volume(), level);
-    ForceSettings usual;
-    usual.limit = limits.value_or(DeviceLimits{}).maximum_force;
-    RendererSettings settings =
-        run::render_settings(setup_of(setup, usual), field, isovalue, limits, ctrl_c());
-    if (const auto tool = tool_in(setup)) settings.tool = tool;
-    if (transform) settings.transform = *transform;
-    return SharedRenderer(make_renderer(field, isovalue, settings));
+    if (transform) {
+        run::refuse_without_effect({{{"scale"}, "the transform has another one"}},
+                                   {{"scale", setup.scale && *setup.scale != transform->scale}});
+    }
+    auto made = without_gil([&] {
+        const double isovalue = io::level_in(field.volume(), level);
+        ForceSettings usual;
+        usual.limit = limits.value_or(DeviceLimits{}).maximum_force;
+        RendererSettings settings =
+            run::render_settings(setup_of(setup, usual), field, isovalue, limits, ctrl_c());
+        if (const auto tool = tool_in(setup)) settings.tool = tool;
+        if (transform) settings.transform = *transform;
+        return SharedRenderer(make_renderer(field, isovalue, settings));
+    });
+    warn_of_level(setup, field, made.proxy.isovalue, 2);
+    return made;
 }
 
 /// Makes the change, or throws std::invalid_argument and changes nothing.
@@ -41,7 +48,9 @@ Tick tick(SharedRenderer& renderer, double time, const Vec3& position,
           const std::optional<Quaternion>& orientation, bool valid, bool armed, bool released,
           const Vec3& pointing) {
     TickInput state{time, position, valid, armed, released, pointing};
-    if (orientation) state.orientation = orientation->normalized().toRotationMatrix();
+    if (orientation) {
+        state.orientation = unit_quaternion("orientation_xyzw", *orientation).toRotationMatrix();
+    }
     return render(renderer.changeable(), state);
 }
 

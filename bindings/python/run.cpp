@@ -195,8 +195,14 @@ std::shared_ptr<LiveRun> make(const Feelable& what, const std::optional<Setup>& 
         setup.device = {python_device->info().name, {}};
         setup.open_device = [made](const auto&, const auto&) { return std::move(*made); };
     }
-    const GilReleased unlocked;
-    return {new LiveRun(std::move(data), setup, python_device), &destroy_session<LiveRun>};
+    const std::shared_ptr<LiveRun> made(
+        without_gil([&] { return new LiveRun(std::move(data), setup, python_device); }),
+        &destroy_session<LiveRun>);
+    warn_of_level(given.value_or(Setup{}).asked, made->field(), made->isovalue(), 2);
+    if (const auto& layers = made->setup().render.layers) {
+        warn(without_gil([&] { return run::layers_warning(*layers, made->data().loaded()); }), 2);
+    }
+    return made;
 }
 
 void bind_playback(py::class_<LiveRun, std::shared_ptr<LiveRun>>& run) {

@@ -1,6 +1,10 @@
 // The servo with a device that is written in Python.
 #include "palpate/servo.hpp"
 
+#include <algorithm>
+#include <atomic>
+#include <stdexcept>
+
 #include "bindings/python/bindings.hpp"
 #include "bindings/python/commands.hpp"
 #include "bindings/python/python_device.hpp"
@@ -22,6 +26,7 @@ struct DeviceServo {
 
     /// False if the device's thread goes on for good (PythonDevice::finish()).
     bool finish() {
+        stopped = true;
         servo.stop();
         return python_device->finish();
     }
@@ -31,6 +36,7 @@ struct DeviceServo {
     auto& privileges() const { return servo.privileges(); }
 
     OwnProcess process;
+    std::atomic<bool> stopped{false};
     std::unique_ptr<PythonDevice> python_device;
     Field field;
     double isovalue;
@@ -40,6 +46,18 @@ struct DeviceServo {
 
 using Held = std::shared_ptr<DeviceServo>;
 
+/// Settings that were asked for are refused if the device cannot render them. Only the usual
+/// stiffness is lowered.
+void check_with(const DeviceLimits& limits, RendererSettings settings) {
+    settings.device = smaller(settings.device, limits);
+    double& stiffness = settings.force.stiffness;
+    if (stiffness == ForceSettings{}.stiffness) {
+        stiffness =
+            std::min(stiffness, greatest_stiffness(settings.device, settings.force.damping));
+    }
+    check(settings);
+}
+
 Held make_servo(const SharedRenderer& renderer, const py::object& device, double rate,
                 bool real_time, double device_rate) {
     ServoSettings settings;
@@ -47,6 +65,7 @@ Held make_servo(const SharedRenderer& renderer, const py::object& device, double
     settings.real_time = real_time;
     auto its_device = make_python_device(device, device_rate);
     Renderer own = renderer;  // with the GIL, as other threads may use it
+    check_with(its_device->info().limits, own.settings);
     const GilReleased unlocked;
     return {new DeviceServo(std::move(own), std::move(its_device), settings),
             &destroy_session<DeviceServo>};
@@ -54,6 +73,7 @@ Held make_servo(const SharedRenderer& renderer, const py::object& device, double
 
 void send_to_servo(DeviceServo& s, const Sent& sent) {
     s.process.check();
+    if (s.stopped) throw std::logic_error("the servo has stopped, so it carries out no commands");
     const Command command = command_of(sent, s.field, s.isovalue, s.force);
     if (!s.servo.send(command)) {
         const py::object type = py::module_::import("palpate.errors").attr("QueueFull");

@@ -37,6 +37,12 @@ ForceSettings force_of(const AskedForce& asked, const ForceSettings& usual) {
     return force;
 }
 
+void warn_of_level(const RenderSetup& setup, const Field& field, double isovalue, int calls) {
+    const bool has_layers = setup.layers && !setup.layers->layers.layers.empty();
+    const bool has_levels = setup.press && (setup.press->minimum || !setup.press->ranges.empty());
+    if (!has_layers && !has_levels) warn(run::level_warning(field, isovalue), calls);
+}
+
 std::shared_ptr<const Tool> tool_in(const RenderSetup& setup) {
     const auto* tool = std::get_if<std::shared_ptr<Tool>>(&setup.asked_tool);
     return tool ? *tool : nullptr;

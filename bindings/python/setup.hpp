@@ -50,6 +50,8 @@ run::Given given_in(const RenderSetup& setup);
 run::RenderSetup setup_of(const RenderSetup& setup, const ForceSettings& usual = {});
 /// The tool as it was given, where it was given as points.
 std::shared_ptr<const Tool> tool_in(const RenderSetup& setup);
+/// Warns as the command line does if there is nothing to touch at this level.
+void warn_of_level(const RenderSetup& setup, const Field& field, double isovalue, int calls);
 /// Resolved for a field. Throws std::invalid_argument.
 Penetrability penetrability_for(const PressThrough& press, const Field& field, double isovalue);
 

@@ -3,6 +3,7 @@
 #include "bindings/python/bindings.hpp"
 #include "bindings/python/own_process.hpp"
 #include "bindings/python/progress.hpp"
+#include "bindings/python/record.hpp"
 #include "palpate/io/error.hpp"
 #include "palpate/run/no_effect.hpp"
 #include "palpate/run/source.hpp"
@@ -97,6 +98,7 @@ void bind_open_store(py::module_& module) {
         [](const fs::path& place, std::optional<io::RawLayout> raw, std::optional<Vec3> spacing,
            std::string orientation, int channel, int time, const fs::path& cache,
            bool forbidden_is_missing) {
+            check_numbers("spacing", spacing, ranges::spacing);
             stream::StoreOptions options;
             options.raw = raw;
             options.spacing = spacing;

@@ -31,6 +31,7 @@ SurfaceMesh extract(const Field& field, const io::Level& level, double tolerance
         return true;
     };
     const double isovalue = io::level_in(field.volume(), level);
+    warn(run::level_warning(field, isovalue), 2);
     const GilReleased unlocked;
     return extract_surface(field, isovalue, options);
 }

@@ -57,11 +57,11 @@ typedef enum palpate_status {
     PALPATE_OUTPUT = 3,        /* a file that cannot be written */
     PALPATE_NO_DEVICE = 4,     /* the device is not available */
     PALPATE_QUEUE_FULL = 5,    /* commands were sent faster than they are carried out: try again */
-    PALPATE_WRONG_STATE = 6,   /* not possible now, for example because the run was not started */
+    PALPATE_WRONG_STATE = 6,   /* not possible now: the run was not started, or has stopped, ... */
     PALPATE_NOTHING_YET = 7,   /* there was no tick yet */
     PALPATE_NO_MEMORY = 8,
     PALPATE_SYSTEM = 9,        /* the system refused something, for example a thread */
-    PALPATE_CANCELLED = 10,    /* a progress callback returned 0 */
+    PALPATE_CANCELLED = 10,    /* a progress callback returned 0, or threw an exception (in C++) */
     PALPATE_INTERNAL = 11      /* a mistake of this library: please report it */
 } palpate_status;
 
@@ -194,13 +194,14 @@ typedef struct palpate_render_options {
     double force_limit;    /* [N] 0: the device's; renderer: 3.3 */
     double static_friction, dynamic_friction;
     double penetration;    /* [device mm] at which the surface gives way; 0: never; not with layers */
-    double scale;          /* physical mm per device mm; 0: fits the workspace; renderer: 1 */
+    double scale;          /* physical mm per device mm; 0: fits the workspace; renderer: 0 is that
+                              of its transform, which this replaces otherwise */
     double rate;           /* [Hz] 250 to 8000; 0: 1000, or 250 if the device renders no force */
     const char *tool;      /* "sphere:5", "needle", a file, ...; null: a point */
     const char *layers;    /* a file or the name of a built-in set; null: none */
     const double *ranges;  /* low, high, low, high, ... [data units]: only these levels are touched, and
                               a press by `penetration` (0: 1) leads to the next range; null: none.
-                              Since 0.3 */
+                              A run refuses an isovalue beside them. Since 0.3 */
     size_t range_count;    /* pairs, at most 16 */
 } palpate_render_options;
 
@@ -537,7 +538,7 @@ PALPATE_API palpate_status palpate_run_text(const palpate_run *run, int32_t whic
 /* The value of a setting as it was last requested. Since 0.3. */
 PALPATE_API palpate_status palpate_run_get(const palpate_run *run, const char *name, double *value);
 
-/* Commands, carried out within a tick or two. */
+/* Commands, carried out within a tick or two. After palpate_run_stop() they give PALPATE_WRONG_STATE. */
 /* Changes a setting. Limits can only be lowered, and the delay can only be raised: other values give
  * PALPATE_INVALID. Since 0.3. */
 PALPATE_API palpate_status palpate_run_set(palpate_run *run, const char *name, double value);

@@ -37,6 +37,10 @@ struct DeviceInfo {
     int buttons = 0;
 };
 
+/// Throws std::invalid_argument, which begins with the name of the member, for a workspace, a
+/// stiffness or a number of buttons that no device has. The limits have a check of their own.
+void check(const DeviceInfo& info);
+
 /// The newest measurement of a device.
 struct DeviceReading {
     Vec3 position = Vec3::Zero();         ///< [device mm]

@@ -20,9 +20,9 @@
 
 namespace palpate {
 
-/// The name that `word` probably stands for: the one that begins with it, or that differs from it
-/// by the fewest missing, added, wrong or swapped letters (at most a third of them). Case does not
-/// matter. Empty if no name is similar.
+/// The name that `word` probably stands for: the one that begins with it, or that differs from it,
+/// as a whole or behind its last dot, by the fewest missing, added, wrong or swapped letters. Case
+/// does not matter. Empty if no name is similar: at most a third of the letters may differ.
 std::string nearest_name(std::string_view word, std::span<const std::string> names);
 
 /// The end of a message about a `word` that is not one of the names: "use one of cubic, linear (did

@@ -23,6 +23,13 @@ TEST(Names, the_beginning_of_a_name_finds_it) {
     EXPECT_EQ(nearest_name("gradient", names), "gradient");
 }
 
+TEST(Names, the_part_behind_the_last_dot_finds_a_name) {
+    const std::vector<std::string> dotted{"force.limit", "force.rate_limit", "friction.static"};
+    EXPECT_EQ(nearest_name("limit", dotted), "force.limit");
+    EXPECT_EQ(nearest_name("rate_limt", dotted), "force.rate_limit");
+    EXPECT_EQ(nearest_name("force.limt", dotted), "force.limit");
+}
+
 TEST(Names, a_word_that_is_like_none_finds_none) {
     for (const std::string& word :
          {std::string("quartz"), std::string("x"), std::string(), std::string(100'000, 'c')}) {

@@ -376,7 +376,7 @@ def test_two_runs_on_the_same_data_are_two_hands_in_one_recording(tmp_path):
         palpate.read_recording(path, 3)
     with pytest.raises(ValueError, match="same data"):
         alone = palpate.Run(palpate.load("synthetic:torus:32x32x32"), palpate.Setup(real_time=False))
-        palpate.record_together([left, alone], tmp_path / "more.csv")
+        palpate.record_together([alone, left], tmp_path / "more.csv")
 
 
 def test_a_limit_that_was_set_in_the_setup_is_the_limit_of_the_run(tmp_path):

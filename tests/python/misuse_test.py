@@ -127,9 +127,12 @@ def test_the_slower_of_device_and_loop_bounds_the_stiffness():
         with pytest.raises(ValueError, match="at 100 Hz and a delay of 20.1 ms to be rendered stably"):
             palpate.Run(volume, setup, device=Slow(), device_rate=100)
         renderer = palpate.Renderer(*ball(), palpate.RenderSetup(stiffness=stiffness, rate=4000))
-        with palpate.Servo(renderer, Slow(), rate=4000, device_rate=100, real_time=False) as servo:
-            until(servo.snapshot)
-            assert servo.snapshot().stiffness == pytest.approx(2.5e-3 / (0.5 / 100 + 2 / 100 + 1e-4))
+        with pytest.raises(ValueError, match="at 100 Hz and a delay of 20.1 ms to be rendered stably"):
+            palpate.Servo(renderer, Slow(), rate=4000, device_rate=100, real_time=False)
+    renderer = palpate.Renderer(*ball(), palpate.RenderSetup(rate=4000))  # the usual stiffness is lowered
+    with palpate.Servo(renderer, Slow(), rate=4000, device_rate=100, real_time=False) as servo:
+        until(servo.snapshot)
+        assert servo.snapshot().stiffness == pytest.approx(2.5e-3 / (0.5 / 100 + 2 / 100 + 1e-4))
 
 
 @pytest.mark.parametrize("call", ["follow", "batch_ns"])

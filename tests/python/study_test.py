@@ -87,6 +87,9 @@ def test_wrong_names_and_fields_are_refused_before_anything_runs(client, motion,
     with pytest.raises(palpate.InputError, match="gone.nrrd"):
         study(client, str(tmp_path / "gone.nrrd"), *motion, {"a": {}}, str(tmp_path / "out"))
     assert not list(tmp_path.rglob("*.npz"))
+    (tmp_path / "file").touch()
+    with pytest.raises(palpate.OutputError, match="file: is no folder"):
+        study(client, SOURCE, *motion, {"a": {}}, tmp_path / "file")
 
 
 @pytest.mark.parametrize("written, read", [("v.nrrd", "v.nrrd"), ("v.nhdr", "v.nhdr"), ("v.mhd", "v.mhd"), ("v_01.nrrd", "v_%02d.nrrd")])

@@ -311,3 +311,25 @@ def test_values_that_are_impossible_are_refused_in_a_line_and_examples_are_taken
 def test_a_wrong_command_line_is_answered_in_one_line(words, text):
     ran = subprocess.run([os.environ["PALPATE"], *words.split()], text=True, capture_output=True, check=False)
     assert (ran.returncode, ran.stderr, ran.stdout) == (2, f"palpate: {text} (see palpate {words.split()[0]} --help)\n", "")
+
+
+def test_constant_differences_need_not_reach_the_first_one_of_a_staircase():
+    assert next_trial(Plan(0.3, differences=(0.1, 0.2), repeats=1, most=0.3), []).difference <= 0.2
+    for plan in (dict(differences=(0.1, 0.4)), dict(difference=0.4)):
+        with pytest.raises(ValueError, match="differences have to be at most 0.3"):
+            Plan(0.3, most=0.3, **plan)
+
+
+@pytest.mark.parametrize("words, told", [
+    (["--repeats", "3"], "--repeats does nothing: it is for --differences"),
+    (["--difference", "0.3", "--differences", "0.4"], "--difference does nothing: --differences has them all")])
+def test_an_option_that_does_nothing_is_warned_of(tmp_path, capsys, words, told):
+    assert trials.main(["synthetic:none", str(tmp_path / "p.csv"), "--standard", "0.3", *words]) != 0
+    assert f"palpate: warning: {told}\n" in capsys.readouterr().err
+
+
+def test_a_warning_is_one_line_as_those_of_the_commands_in_c(tmp_path):
+    words = ["study", "synthetic:sphere:16x16x16@9999", "p.csv", "--standard", "0.3", "--seconds", "0.1"]
+    done = subprocess.run([os.environ["PALPATE"], *words], cwd=tmp_path, capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    warned = [line for line in done.stderr.splitlines() if "9999" in line]
+    assert len(warned) == 1 and warned[0].startswith("palpate: warning: isovalue 9999 (data 0 to ") and ".py" not in done.stderr

@@ -130,6 +130,9 @@ def _expected(kind):
         return f"a list{f' of {count}' if count else ''}, each {_expected(inside)}"
     if kind.startswith("Tuple["):
         return f"({', '.join(map(_expected, _inside(kind)))})"
+    if kind.startswith("Dict["):
+        key, value = map(_expected, _inside(kind))
+        return f"a dict from {key} to {value}"
     if array := _ARRAY.fullmatch(kind):
         sides = [side.strip() for side in (array[2] or "").split(",") if side.strip()]
         numbers = {"i": "whole numbers", "u": "whole numbers from 0"}.get(array[1][0], "numbers")

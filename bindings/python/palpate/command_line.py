@@ -8,6 +8,7 @@ import os
 import re
 import signal
 import sys
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, NoReturn, Optional, TextIO
 
@@ -228,6 +229,10 @@ def tell(text: object) -> None:
     remark(f"palpate: {shown if len(shown) <= 6000 else f'{shown[:5500]}...{shown[-500:]}'}")
 
 
+def _tell_warning(message: object, *place: object) -> None:
+    tell(f"warning: {message}")
+
+
 def _end(number: int, frame: Any) -> NoReturn:
     raise KeyboardInterrupt(number)
 
@@ -245,6 +250,7 @@ def run(work: Callable[[], Any], interrupted: str = "interrupted", load: Callabl
         for end in ENDS:
             signal.signal(end, by)
 
+    warnings.showwarning = _tell_warning
     try:
         handle_ends(_end_at_once)
         signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDS)

@@ -18,6 +18,7 @@ from distributed import Client
 
 from . import Field, RenderSetup, Trace, __version__, load, replay
 from .distributed import Name, Progress, check_workers, each_piece, seen
+from .errors import OutputError
 from .trace import COLUMNS
 from .whole_files import make_folder, write_whole
 
@@ -89,7 +90,7 @@ def study(client: Client, source: Name, isovalue: Union[float, str], time: Any, 
     (solid, background, interpolation). isovalue, time, position, orientation_xyzw: as for replay().
     setups: a RenderSetup or its fields by name. out: a folder that gets NAME.npz for each; traces that
     are there already, whole and of the same work, are kept. progress('study', done, all) may raise to
-    stop. Raises ValueError, InputError.
+    stop. Raises ValueError, InputError, OutputError.
     """
     source, out = os.fsdecode(source), os.fsdecode(out)
     for name in setups:
@@ -115,7 +116,10 @@ def study(client: Client, source: Name, isovalue: Union[float, str], time: Any, 
         work.append((name, key.hexdigest(), setup))
     check_workers(client)
     folder = os.path.abspath(out)
-    make_folder(Path(folder))
+    try:
+        make_folder(Path(folder))
+    except OSError as error:
+        raise OutputError(f"{out}: is no folder, and cannot be made one: {error.strerror}") from error
     one = functools.partial(_replay, source, options, files, isovalue, motion, folder)
     each_piece(client, "study", one, work, progress)
     return {name: _read(Path(folder) / f"{name}.npz")[1] for name in setups}

@@ -73,6 +73,8 @@ class Trace:
         if axes is None:
             from matplotlib import pyplot
             axes = pyplot.subplots(2, sharex=True)[1]
+        if numpy.size(axes) != 2:
+            raise ValueError("axes: two are needed, for force and depth, as from pyplot.subplots(2)[1]")
         force, depth = axes
         force.plot(self.t, numpy.linalg.norm(self.force, axis=1))
         force.set_ylabel("force [N]")

@@ -20,7 +20,7 @@ from typing import Any, Optional, Union
 
 import numpy
 
-from .command_line import ABOVE_ZERO, Kind, Parser, answer_to, remark, run, say, whole, without_secrets
+from .command_line import ABOVE_ZERO, Kind, Parser, answer_to, remark, run, say, tell, whole, without_secrets
 from .errors import DeviceError, InputError, OutputError
 from .whole_files import make_folder, sync
 
@@ -48,9 +48,10 @@ class Plan:
     most: float = 1.0
 
     def __post_init__(self) -> None:
-        if not (self.standard > 0 and all(0 < d < math.inf for d in (self.difference, *self.differences)) and self.repeats > 0):
+        asked = self.differences if len(self.differences) else (self.difference,)
+        if not (self.standard > 0 and all(0 < d < math.inf for d in asked) and self.repeats > 0):
             raise ValueError("standard, differences and repeats have to be above 0")
-        if not max((self.difference, *self.differences)) <= self.most < math.inf:
+        if not max(asked) <= self.most < math.inf:
             raise ValueError(f"differences have to be at most {self.most:g}, the largest one that the plan allows")
 
 
@@ -300,6 +301,10 @@ def _ask(chosen: Any) -> None:
     volume, at, level = chosen.volume.rpartition("@")
     if "/" in level or re.fullmatch(r"[^/]*://[^/]*", volume):  # of a folder's name, or behind the password of an address
         volume, at, level = "", "", chosen.volume
+    idle, why = (("difference", "--differences has them all") if chosen.differences else
+                 ("repeats", "it is for --differences"))
+    if idle in PARSER.given:
+        tell(f"warning: --{idle} does nothing: {why}")
     plan = Plan(chosen.standard, chosen.difference, tuple(chosen.differences), chosen.repeats, chosen.seed, chosen.most)
     largest = plan.standard * (1 + (max(plan.differences) if plan.differences else plan.most))
     rows = session(chosen.file, plan, touching(volume if at else level, level if at else None, chosen.device, chosen.setting,

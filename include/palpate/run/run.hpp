@@ -32,7 +32,7 @@ class QueueFull : public std::invalid_argument {
     using std::invalid_argument::invalid_argument;
 };
 
-/// The call is not possible now: the run was not started yet, or was started before.
+/// The call is not possible now: the run was not started yet, was started before, or has stopped.
 class WrongState : public std::logic_error {
   public:
     using std::logic_error::logic_error;
@@ -90,6 +90,7 @@ class Run {
     /// Throws std::invalid_argument, with the reason, for a command that cannot be executed, and
     /// for DeviceLimits that lower nothing; QueueFull if commands come too fast. While there are
     /// layers with surfaces, an isovalue has no effect. The last one applies when they are removed.
+    /// WrongState after stop().
     void send(const Command& asked);
     /// Commands that were sent and not carried out yet.
     std::int64_t waiting() const { return started_servo().waiting(); }
@@ -133,7 +134,7 @@ class Run {
     /// The same for several runs on the same data, into one file: they are its hands, in this order
     /// (docs/recordings.md). The file is complete when the last of them has ended its recording.
     /// Throws std::invalid_argument for runs on different data, for no run, and for a run that is
-    /// given twice.
+    /// given twice, WrongState for one that has stopped.
     static void record_together(std::span<Run* const> runs, const std::filesystem::path& path,
                                 const OnProgress& progress = {});
     /// Ends the recording; the session continues. Returns the number of its ticks, 0 without a

@@ -128,6 +128,9 @@ double isovalue_of(const LoadedVolume& loaded, const FieldSetup& setup,
 /// requested as well.
 double isovalue_of(const LoadedVolume& loaded, const Setup& setup, const OnProgress& progress = {});
 
+/// A warning if there is nothing to touch at this level, or if all of space outside the data is
+/// solid (palpate::isovalue_warning()). Otherwise empty.
+std::string level_warning(const Field& field, double isovalue);
 /// A warning if the volume does not declare the units of these layers, or has no densities at some
 /// of their levels, or if their label volume may lie elsewhere (warning_beside()). Otherwise empty.
 std::string layers_warning(const io::LayersFile& layers, const LoadedVolume& loaded);

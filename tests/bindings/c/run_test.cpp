@@ -225,6 +225,47 @@ TEST_F(CRun, devices_that_cannot_be_are_refused) {
     EXPECT_EQ(run_, nullptr);
 }
 
+TEST_F(CRun, an_own_device_is_found_under_any_name) {
+    palpate_own_device own = device_of(hand_);
+    own.name = "mein Ger\u00e4t: 2, links=1";
+    ASSERT_EQ(create(&own, own.name), PALPATE_OK) << palpate_last_error();
+    ASSERT_EQ(palpate_run_start(run_), PALPATE_OK);
+    EXPECT_EQ(palpate_run_use_device(run_, own.name), PALPATE_OK) << palpate_last_error();
+    EXPECT_EQ(hand_.closes, 1);
+    EXPECT_EQ(palpate_run_use_device(run_, "simulated:hand=hold"), PALPATE_OK);
+    EXPECT_EQ(palpate_run_use_device(run_, own.name), PALPATE_OK) << palpate_last_error();
+    EXPECT_EQ(palpate_run_use_device(run_, "nothing: 2"), PALPATE_INVALID);
+}
+
+TEST_F(CRun, that_has_stopped_takes_no_commands_and_records_nothing) {
+    const support::ScratchFolder folder;
+    ASSERT_EQ(create(nullptr, "simulated:touchx,hand=hold"), PALPATE_OK) << palpate_last_error();
+    ASSERT_EQ(palpate_run_start(run_), PALPATE_OK);
+    ASSERT_TRUE(shows([](const auto& s) { return s.felt.isovalue == 100; }));
+    ASSERT_EQ(palpate_run_stop(run_), PALPATE_OK);
+    EXPECT_EQ(palpate_run_set_isovalue(run_, 90), PALPATE_WRONG_STATE);
+    EXPECT_EQ(palpate_run_lift(run_), PALPATE_WRONG_STATE);
+    EXPECT_EQ(palpate_run_record(run_, (folder / "r.csv").c_str()), PALPATE_WRONG_STATE);
+    EXPECT_FALSE(std::filesystem::exists(folder / "r.csv"));
+    EXPECT_EQ(now().felt.isovalue, 100);
+}
+
+TEST_F(CRun, refuses_an_isovalue_beside_ranges) {
+    const std::array<double, 2> ranges{50, 120};
+    PALPATE_STRUCT(palpate_render_options, render);
+    render.ranges = ranges.data();
+    render.range_count = 1;
+    PALPATE_STRUCT(palpate_run_options, options);
+    options.render = &render;
+    options.no_real_time = 1;
+    EXPECT_EQ(palpate_run_create(data_, &options, &run_), PALPATE_OK) << palpate_last_error();
+    palpate_run_destroy(std::exchange(run_, nullptr));
+    render.has_isovalue = 1;
+    render.isovalue = 100;
+    EXPECT_EQ(palpate_run_create(data_, &options, &run_), PALPATE_INVALID);
+    EXPECT_NE(std::string(palpate_last_error()).find("isovalue does nothing"), std::string::npos);
+}
+
 TEST_F(CRun, commands_show_in_snapshots) {
     ASSERT_EQ(create(nullptr, "simulated:touchx,hand=hold"), PALPATE_OK) << palpate_last_error();
     PALPATE_STRUCT(palpate_snapshot, none);

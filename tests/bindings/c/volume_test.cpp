@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <stdexcept>
 #include <string>
 #include <thread>
 
@@ -271,6 +272,16 @@ TEST(CProgress, of_a_thread_is_told_by_every_long_call_and_can_stop_it) {
     palpate_field_destroy(field);
     palpate_data_destroy(data);
     palpate_volume_destroy(volume);
+}
+
+TEST(CProgress, that_throws_cancels_the_call) {
+    palpate_volume* volume = nullptr;
+    palpate_set_progress([](double, void*) -> std::int32_t { throw std::runtime_error("enough"); },
+                         nullptr);
+    EXPECT_EQ(palpate_volume_load("synthetic:noise:64x64x64", nullptr, &volume), PALPATE_CANCELLED);
+    EXPECT_STREQ(palpate_last_error(), "the progress function threw an exception: enough");
+    palpate_set_progress(nullptr, nullptr);
+    EXPECT_EQ(volume, nullptr);
 }
 
 TEST(CProgress, is_told_by_every_edit_and_can_stop_it) {

@@ -1,0 +1,61 @@
+"""Sessions that have ended, and devices of Python that cannot be."""
+
+import palpate
+import pytest
+
+SCENE = palpate.scene("sphere:16x16x16")
+FIELD = palpate.Field(SCENE.volume)
+
+
+class Still:
+    def __init__(self, **info):
+        self.more = info
+
+    def info(self):
+        return palpate.DeviceInfo(name="still", **self.more)
+
+    def read(self):
+        return palpate.DeviceReading(status="ready")
+
+
+def servo(device, **render):
+    return palpate.Servo(palpate.Renderer(FIELD, 100, palpate.RenderSetup(**render)), device, real_time=False)
+
+
+def test_a_session_that_has_stopped_takes_no_commands(tmp_path):
+    run = palpate.Run(SCENE.volume, palpate.Setup(isovalue=100, real_time=False))
+    for session in (servo(Still()), run):
+        with session:
+            session.send(palpate.command.Isovalue(90))
+        with pytest.raises(RuntimeError, match="has stopped"):
+            session.send(palpate.command.Isovalue(80))
+    assert run.isovalue == 90
+    with pytest.raises(RuntimeError, match="has stopped"):
+        run.record(tmp_path / "after.csv")
+    assert not (tmp_path / "after.csv").exists()
+    run.edit(palpate.Fill((0, 0, 0), (1, 1, 1), 9))  # the data goes on
+    assert run.undo()
+
+
+def test_a_servo_refuses_settings_that_its_device_cannot_render():
+    for render in (dict(stiffness=3), dict(force=palpate.ForceSettings(damping=0.004))):
+        with pytest.raises(ValueError, match="stable|must be|below"):
+            servo(Still(), **render)
+    with servo(Still(), stiffness=0.9):
+        pass
+    slow = palpate.Servo(palpate.Renderer(FIELD, 100), Still(), device_rate=200, real_time=False)  # the usual stiffness is lowered
+    with slow:
+        while not slow.snapshot():
+            pass
+        assert 0 < slow.snapshot().stiffness < 0.5
+
+
+@pytest.mark.parametrize("high", [(-80, 80, 80), (-90, 80, 80)])
+def test_a_device_without_room_is_refused(high):
+    device = Still(workspace_high=high)
+    with pytest.raises(ValueError, match="workspace_high has to be above workspace_low"):
+        servo(device)
+    with pytest.raises(ValueError, match="workspace_high has to be above workspace_low"):
+        palpate.Run(SCENE.volume, palpate.Setup(real_time=False), device=device)
+    with pytest.raises(ValueError, match="workspace_high has to be above workspace_low"):
+        palpate.fit_workspace(FIELD.geometry, device.info())
