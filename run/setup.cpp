@@ -232,7 +232,8 @@ Session make_session(const Field& field, double isovalue, const DeviceInfo& info
     }
     RendererSettings settings = render_settings(render, field, isovalue, info.limits, progress);
     settings.transform = transform_for(field.geometry(), info, setup);
-    Session session{make_renderer(field, isovalue, settings), {}};
+    Session session{make_renderer(field, isovalue, settings), setup.session};
+    check(session.settings);
     session.settings.clutch_buttons = bit_of(setup.buttons.clutch, "clutch", info.buttons);
     session.settings.deadman_buttons = bit_of(setup.buttons.deadman, "dead-man", info.buttons);
     if (session.settings.clutch_buttons & session.settings.deadman_buttons) {

@@ -67,6 +67,13 @@ void RunOptions::add_device_options(CLI::App& command) {
         command.add_option_function<std::string>(
             one.option, choose, fmt::format("{} (default: {})", one.about, one.left_open));
     });
+    for_each_setting<SessionSettings>([&](const auto& one) {
+        auto& value = given.session.*one.member;
+        if constexpr (std::same_as<double&, decltype(value)>) {
+            command.add_option(one.option, value, fmt::format("{} [{}]", one.about, one.unit))
+                ->default_str(fmt::format("{}", value));
+        }
+    });
 }
 
 void RunOptions::add_script_options(CLI::App& command) {

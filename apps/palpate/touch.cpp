@@ -259,7 +259,8 @@ void touch(const CLI::App& command, const TouchOptions& options) {
     check_hands(options, setups);
     require_own_time(options, setups);
     if (options.unpaced) {
-        warn_of_no_effect(command, {"--normal-priority"}, "--unpaced has no thread of its own");
+        warn_of_no_effect(command, {"--normal-priority", "--overrun"},
+                          "--unpaced has no thread of its own, and no clock");
     }
     const auto remote = make_remote(options.igtl, options.igtl_connect, options.source.quiet);
     run::LoadedVolume loaded = load_for_terminal(options.source);

@@ -53,6 +53,17 @@ void add_button(Record<Setup>& record, const Setting& one) {
     record.property(one.name, get, set, text_of(one).c_str());
 }
 
+/// The bits of buttons follow from clutch and dead-man switch.
+void add_number(Record<Setup>&, const Setting<SessionSettings, std::uint32_t>&) {}
+void add_number(Record<Setup>& record, const Setting<SessionSettings, double>& one) {
+    const auto get = [one](const Setup& s) { return s.session.*one.member; };
+    const auto set = [one](Setup& s, double value) {
+        check_range(one, value);
+        s.session.*one.member = value;
+    };
+    record.property(one.name, get, set, text_of(one).c_str());
+}
+
 void bind_setup(py::module_& module) {
     using S = Setup;
     using F = run::FieldSetup;
@@ -80,6 +91,7 @@ void bind_setup(py::module_& module) {
             "As for --device: 'simulated', 'haply:port=10001', ...")
         .field("facing", &S::facing, "The side of the body that faces the person.");
     for_each_setting<run::Buttons>([&](const auto& one) { add_button(record, one); });
+    for_each_setting<SessionSettings>([&](const auto& one) { add_number(record, one); });
     using P = run::PlaybackSetup;
     using L = io::LoaderSettings;
     record

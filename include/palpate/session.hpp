@@ -31,10 +31,13 @@ inline constexpr auto settings_of<SessionSettings> = std::tuple{
     setting(&SessionSettings::deadman_buttons, "deadman_buttons", "",
             "Bits of the buttons of which one must be held (0: none)"),
     setting(&SessionSettings::fastest_hand, "fastest_hand", "device mm/s",
-            "Fastest plausible motion of a hand")
+            "Fastest plausible motion of a hand. A jump to a position that needs more counts as no "
+            "reading")
         .titled("fastest hand")
+        .as_option("--fastest-hand")
         .within(ranges::limit),
     setting(&SessionSettings::overrun, "overrun", "s", "A tick that takes longer gives no force")
+        .as_option("--overrun")
         .within(ranges::limit)};
 
 /// How samples were made, so that a replay of a recording can make them again.

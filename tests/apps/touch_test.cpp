@@ -146,6 +146,18 @@ TEST(Touch, ends_when_the_hand_has_finished) {
     EXPECT_LT(report["ticks"], 650);
 }
 
+TEST(Touch, gives_no_force_to_a_hand_that_is_faster_than_is_plausible) {
+    const ScratchFolder folder;
+    const std::string press = "touch " + unpaced + " --device simulated:hand=press,seconds=0.5 -q";
+    EXPECT_EQ(palpate(folder, press + " --record usual.csv").status, 0);
+    const Outcome slow = palpate(folder, press + " --record slow.csv --fastest-hand 0.001");
+    EXPECT_EQ(slow.status, 0) << slow.err;
+    io::RecordingReader reader(folder / "slow.csv");
+    EXPECT_EQ(reader.head().session.fastest_hand, 0.001);
+    EXPECT_GT(ticks_of(folder / "usual.csv").felt, 0);
+    EXPECT_EQ(ticks_of(folder / "slow.csv").felt, 0);
+}
+
 TEST(Touch, carries_out_and_records_commands) {
     const ScratchFolder folder;
     put_bytes(folder / "commands.txt",
@@ -285,6 +297,8 @@ TEST(Touch, refuses_options_that_make_no_sense) {
     wrong("--facing up", "up");
     wrong("--clutch x", "--clutch: a button is a number from 1 to 32, none or auto, not 'x'");
     wrong("--dead-man 1", "the device has 0 buttons");
+    wrong("--fastest-hand 0", "fastest hand [device mm/s] = 0: must be above 0");
+    wrong("--overrun -1", "overrun [s] = -1: must be above 0");
     wrong("--seconds -1", "-1");
     wrong("--seconds nan", "'nan' is not a number");
     wrong("--seconds inf", "inf");

@@ -21,7 +21,7 @@ POSITIVE = {"MotionSettings.rate_hz", "MotionSettings.speed_mm_s", "RenderSetup.
             "Texture.wavelength", "DeviceLimits.maximum_force", "DeviceLimits.physical_damping", "DeviceLimits.warming_time",
             "DeviceLimits.physical_rotational_damping", "Layers.closing", "Brush.radius", "HandBrush.radius"}
 LIMITS = {"ForceSettings.rate_limit", "ForceSettings.stale_after", "ForceSettings.torque_rate_limit", "DeviceLimits.continuous_force",
-          "HandBrush.rate"}
+          "HandBrush.rate", "Setup.fastest_hand", "Setup.overrun"}
 FROM_ZERO = {"MotionSettings.duration_s", "MotionSettings.depth_mm", "DeviceInfo.stiffness", "RenderSetup.limit", "RenderSetup.stiffness",
              "DeviceLimits.maximum_torque", "DeviceLimits.delay", "Needle.lateral_stiffness", "Magnet.distance", "Magnet.peak",
              "Texture.amplitude", "Friction.static_coefficient", "Friction.dynamic_coefficient"} | {

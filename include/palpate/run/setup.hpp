@@ -106,6 +106,7 @@ struct Setup {
     OpenDevice open_device = &devices::open_device;  ///< an application may have its own devices
     Facing facing = Facing::anterior;
     Buttons buttons;
+    SessionSettings session;  ///< except for its bits of buttons, which follow from `buttons`
     PlaybackSetup playback;
     bool real_time = true;  ///< ask for real-time priority
 };
