@@ -144,47 +144,34 @@ def _same(one, other):
     return one == other
 
 
-class _Settings:
-    """What every class with `_fields` gets."""
+class _Parts:
+    """Of a class whose objects are what they were made of, by keywords: `_parts` names these."""
 
     def __repr__(self):
-        fields = ", ".join(f"{name}={getattr(self, name)!r}" for name in self._fields)
-        return f"{type(self).__name__}({fields})"
+        within = "command." if type(self).__module__.endswith(".command") else ""
+        parts = ", ".join(f"{name}={getattr(self, name)!r}" for name in self._parts)
+        return f"{within}{type(self).__name__}({parts})"
 
     def __eq__(self, other):
         if type(self) is not type(other):
             return NotImplemented
-        return all(_same(getattr(self, name), getattr(other, name)) for name in self._fields)
+        return all(_same(getattr(self, name), getattr(other, name)) for name in self._parts)
 
     __hash__ = None
 
     def __reduce__(self):
-        return _made, (type(self), {name: getattr(self, name) for name in self._fields})
+        return _made, (type(self), {name: getattr(self, name) for name in self._parts})
 
 
-def _made(kind, fields):
-    return kind(**fields)
+def _made(kind, parts):
+    return kind(**parts)
 
 
-def _complete_value(kind, within):
-    """A class whose objects are what they were made of: repr, equality and pickling."""
-    names = [one.name for one in signatures(kind.__init__)[0]]
-    assert all(hasattr(kind, name) for name in names), kind
-
-    def parts(self):
-        return tuple(getattr(self, name) for name in names)
-
-    def __repr__(self):
-        text = ", ".join(f"{name}={part!r}" for name, part in zip(names, parts(self)))
-        return f"{within}{kind.__name__}({text})"
-
-    def __eq__(self, other):
-        if type(self) is not type(other):
-            return NotImplemented
-        return all(map(_same, parts(self), parts(other)))
-
-    kind.__repr__, kind.__eq__, kind.__hash__ = __repr__, __eq__, None
-    kind.__reduce__ = lambda self: (kind, parts(self))
+def _complete_parts(kind, parts):
+    kind._parts = tuple(parts)
+    for name in ("__repr__", "__eq__", "__hash__", "__reduce__"):
+        if name != "__reduce__" or "__getstate__" not in vars(kind):
+            setattr(kind, name, vars(_Parts)[name])
 
 
 def _initializer(raw, kind, fields):
@@ -237,15 +224,10 @@ def complete(module):
                        "copy.copy()")
                 setattr(kind, name, _frozen_getter(raw, why))
         if hasattr(kind, "_fields"):
-            own = vars(kind)
-            for name in ("__repr__", "__eq__", "__hash__", "__reduce__"):
-                if name != "__reduce__" or "__getstate__" not in own:
-                    setattr(kind, name, vars(_Settings)[name])
+            _complete_parts(kind, kind._fields)
             kind.__init__ = _initializer(kind.__init__, kind.__name__, kind._fields)
-    for kind in (module.Stroke, module.Fill, module.Replace):
-        _complete_value(kind, "")
-    for kind in vars(module.command).values():
-        if isinstance(kind, type) and kind.__name__ != "UseLayers":
-            _complete_value(kind, "command.")
+    commands = [kind for name, kind in vars(module.command).items() if isinstance(kind, type) and name != "UseLayers"]
+    for kind in (module.Stroke, module.Fill, module.Replace, *commands):
+        _complete_parts(kind, [one.name for one in signatures(kind.__init__)[0]])
     for name in ("limit", "stiffness"):
         setattr(module.RenderSetup, name, _alias(module.ForceSettings, "force", name))
