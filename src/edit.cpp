@@ -266,9 +266,6 @@ void check(const Edit& edit, const Samples& samples) {
         if (!std::isfinite(fill->value)) {
             throw std::invalid_argument("the value that fills a box must be finite");
         }
-        if (fill->box.empty()) {
-            throw std::invalid_argument("the low corner of a box must not lie above its high one");
-        }
     } else if ((std::get<edit::Replace>(edit).at.array().abs() > 1 << 20).any()) {
         throw std::invalid_argument("the samples to put in place lie far outside the grid");
     }

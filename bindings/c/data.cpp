@@ -79,6 +79,7 @@ extern "C" PALPATE_API palpate_status palpate_data_fill(palpate_data* data, cons
                                                         const int32_t high[3], double value) {
     return guarded([&] {
         const SampleBox box{index3(&given(low, "low")), index3(&given(high, "high"))};
+        if (box.empty()) throw std::invalid_argument("high must not lie below low along any axis");
         data_of(data).editor().apply(edit::Fill{box, value}, progress_of_thread());
     });
 }

@@ -16,6 +16,13 @@ std::optional<Box> box_of(const SampleBox& box) {
     return Box(box.low, box.high);
 }
 
+edit::Fill filled_box(const Index3& low, const Index3& high, double value) {
+    check_numbers("value", value, ranges::finite);
+    const SampleBox box{low, high};
+    if (box.empty()) throw std::invalid_argument("high must not lie below low along any axis");
+    return {box, value};
+}
+
 void bind_brushes(py::module_& module) {
     Record<Brush>(module, "Brush", "A round brush.").settings().done();
     Record<run::HandBrush>(module, "HandBrush", "A brush that follows the proxy while it touches.")
@@ -47,11 +54,7 @@ void bind_edits(py::module_& module) {
         .def_readonly("start", &edit::Stroke::from, "[mm, physical]")
         .def_readonly("end", &edit::Stroke::to, "[mm, physical]");
     py::class_<edit::Fill>(module, "Fill", "Sets all samples of a box to one value.")
-        .def(py::init([](const Index3& low, const Index3& high, double value) {
-                 check_numbers("value", value, ranges::finite);
-                 return edit::Fill{{low, high}, value};
-             }),
-             py::arg("low"), py::arg("high"), py::arg("value"),
+        .def(py::init(&filled_box), py::arg("low"), py::arg("high"), py::arg("value"),
              "Corners (i, j, k), both in the box; value [data units].")
         .def_property_readonly("low", [](const edit::Fill& f) { return f.box.low; })
         .def_property_readonly("high", [](const edit::Fill& f) { return f.box.high; })

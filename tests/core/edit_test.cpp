@@ -321,7 +321,6 @@ TEST(Edit, that_cannot_be_made_is_refused) {
     refused(sweep([](auto& s) { s.from.orientation.coeffs() *= 1.1; }));
     refused(sweep([&](auto& s) { s.to.orientation.x() = bad; }));
     refused(edit::Fill{{}, bad});
-    refused(edit::Fill{{{3, 3, 3}, {4, 2, 4}}, 1});  // no sample
     refused(edit::Replace{Index3(1 << 21, 0, 0), samples->volume()});
     const Samples sequence({{0, samples->volume()}, {1, samples->volume()}});
     EXPECT_THROW(check(edit::Fill{}, sequence), std::invalid_argument);

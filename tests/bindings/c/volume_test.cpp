@@ -291,6 +291,7 @@ TEST(CProgress, is_told_by_every_edit_and_can_stop_it) {
     ASSERT_EQ(palpate_data_create(volume, &data), PALPATE_OK);
     ASSERT_EQ(palpate_field_create(volume, nullptr, &field), PALPATE_OK);
     const std::int32_t low[3] = {1, 1, 1}, high[3] = {3, 3, 3};
+    EXPECT_EQ(palpate_data_fill(data, high, low, 77), PALPATE_INVALID);
     ASSERT_EQ(palpate_data_fill(data, low, high, 77), PALPATE_OK);
     int calls = 0;
     const auto stop = [](double, void* context) {
