@@ -310,11 +310,9 @@ Neighbours Field::around(const Index3& at) const {
     return visit_around(at, [](const auto* centre, std::ptrdiff_t row, std::ptrdiff_t slice) {
         Neighbours samples;
         double* out = samples.data();
-        for (const std::ptrdiff_t z : {-slice, std::ptrdiff_t{0}, slice}) {
-            for (const std::ptrdiff_t y : {z - row, z, z + row}) {
-                for (int x = -1; x <= 1; ++x) *out++ = double(centre[y + x]);
-            }
-        }
+        for_each_row(centre, row, slice, [&](const auto* first) {
+            for (int x = 0; x < 3; ++x) *out++ = double(first[x]);
+        });
         return samples;
     });
 }

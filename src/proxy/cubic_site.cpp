@@ -144,11 +144,9 @@ void CubicSite::look_at_cube() {
                               std::ptrdiff_t slice) {
         const auto best = [&](auto better) {
             auto found = *centre;
-            for (const std::ptrdiff_t z : {-slice, std::ptrdiff_t{0}, slice}) {
-                for (const std::ptrdiff_t y : {z - row, z, z + row}) {
-                    for (int x = -1; x <= 1; ++x) found = better(found, centre[y + x]);
-                }
-            }
+            for_each_row(centre, row, slice, [&](const auto* first) {
+                for (int x = 0; x < 3; ++x) found = better(found, first[x]);
+            });
             return found;
         };
         return s > 0 ? best([](auto a, auto b) { return std::max(a, b); }) - isovalue

@@ -78,7 +78,7 @@ struct Walked {
 /// advance() goes to an exit, or gives the part of the way there at which the surface is met;
 /// crossed() is told of each wall, and is_enough() of what is left.
 template <class AnySite, class Course>
-inline Walked walk_straight(AnySite& site, Vec3 direction, Course&& course) {
+[[gnu::always_inline]] inline Walked walk_straight(AnySite& site, Vec3 direction, Course&& course) {
     double left = 1;
     while (course.spend()) {
         if (const double t = course.skip(site, direction, left); t > 0) {
