@@ -111,18 +111,6 @@ class LayersTick {
         return stable(force, input_.limits);
     }
 
-    /// The same, kept while surface and tissue stay the same.
-    const ForceSettings& force() {
-        const int inside = tissues_.inside(update_);
-        if (!has_force_ || force_touched_ != state_.touched || force_inside_ != inside) {
-            force_ = force_now();
-            has_force_ = true;
-            force_touched_ = state_.touched;
-            force_inside_ = inside;
-        }
-        return force_;
-    }
-
     ProxySettings bound() {
         const NextLayers next = tissues_.bound();
         ProxySettings settings = input_.proxy;
@@ -138,7 +126,6 @@ class LayersTick {
     }
 
     void move_to(const Vec3& hand) {
-        has_force_ = false;
         gradient_ = gradient();
         ProxySettings settings = bound();
         const ProxyMethod method = state_.needle.inserted ? &update_straight : input_.method;
@@ -163,10 +150,11 @@ class LayersTick {
 
     /// The spring, now that SCP and HIP are where they are.
     void stretch() {
+        force_ = force_now();
         state_.spring.touching &= pulls(update_);
         if (!pulls(update_)) return;
         distance_ = (update_.scp - update_.hip).norm() * input_.device_per_volume;
-        spring_force_ = state_.spring.move(distance_, force().stiffness);
+        spring_force_ = state_.spring.move(distance_, force_.stiffness);
     }
 
     /// Friction pulls aside; only what presses counts. In grooves and corners the normal is that of
@@ -249,7 +237,7 @@ class LayersTick {
         felt_.inside = static_cast<std::int8_t>(tissues_.inside(update_));
         r.felt = felt_;
         if (!moved()) return r;
-        r.force = force();
+        r.force = force_;
         const bool pulled = pulls(update_), needle = state_.needle.inserted;
         Vec3 force = Vec3::Zero();
         if (pulled && distance_ > 0) {
@@ -307,9 +295,7 @@ class LayersTick {
     const StepObserver observer_;
     ProxyUpdate update_;
     LayersFelt felt_;
-    ForceSettings force_;  // of the last move, if it has_force_: of what was touched and around
-    bool has_force_ = false;
-    int force_touched_ = -1, force_inside_ = 0;
+    ForceSettings force_;      // after the last move
     double gradient_ = 0;      // magnitude at the SCP [data units / mm]
     double distance_ = 0;      // of SCP and HIP [device mm]
     double spring_force_ = 0;  // [N]
