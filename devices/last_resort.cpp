@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <csignal>
 #include <ctime>
+#include <mutex>
 #include <stdexcept>
 
 #include "devices/link.hpp"
@@ -23,6 +24,7 @@ constexpr std::array crashes{SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGTRAP, 
 /// Signals that cannot be caught, or that do not end or suspend a program.
 constexpr std::array harmless{SIGKILL, SIGSTOP, SIGCHLD, SIGCONT, SIGURG, SIGWINCH};
 
+std::mutex changes;  // of what is guarded, by any thread; handlers do not take it
 std::array<std::atomic<Device*>, LastResort::most> guarded{};
 /// Devices that a handler has told to stop.
 std::array<std::atomic<Device*>, LastResort::most> told{};
@@ -111,6 +113,7 @@ void forget_signals() {
 }  // namespace
 
 LastResort::LastResort(Device& device, Pause pause) {
+    const std::lock_guard lock(changes);
     if (std::ranges::any_of(guarded, [&](const auto& place) { return place.load() == &device; })) {
         throw std::logic_error("this device has a last resort already");
     }
@@ -131,6 +134,7 @@ LastResort::LastResort(Device& device, Pause pause) {
 }
 
 LastResort::~LastResort() {
+    const std::lock_guard lock(changes);
     guarded[place_].store(nullptr);
     told[place_].store(nullptr);
     const bool last = std::ranges::none_of(guarded, [](const auto& place) { return place.load(); });

@@ -1,4 +1,4 @@
-// Starts, changes and ends a run.
+// Starts and ends a run, passes commands on, and records it. Its changes: run_changes.cpp.
 #include "palpate/run/run.hpp"
 
 #include <algorithm>
@@ -6,13 +6,10 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
-#include <functional>
 #include <stdexcept>
 #include <thread>
 #include <utility>
 
-#include "devices/claim.hpp"
-#include "io/system/number.hpp"
 #include "palpate/run/beside.hpp"
 
 namespace palpate::run {
@@ -32,50 +29,6 @@ std::string utc_now() {
                   static_cast<int>(time.seconds().count()));
     return text.data();
 }
-
-/// The field that simulated hands see. For a store, of which little may be in memory, this is the
-/// overview.
-Field seen(const Field& field) {
-    if (!field.samples().resident()) return field;
-    return Field(flattened(field.samples()), field.solid(), field.background(),
-                 field.interpolation());
-}
-
-/// For the run `hand`. If the device is the one that it has, it is closed first.
-std::unique_ptr<Device> open_for(const Field& field, double isovalue, const Setup& setup,
-                                 const Run* hand, const OnProgress& progress = {},
-                                 const std::function<void()>& close = {}) {
-    const double rate = setup.render.rate.value_or(usual_rate);
-    if (!(rate >= 250 && rate <= 8000)) {
-        std::string text;
-        io::append_number(text, rate);
-        throw std::invalid_argument("rate " + text + " Hz: a live session runs at 250 to 8000 Hz");
-    }
-    const devices::OpenedBy opened_by(hand, close);
-    return setup.open_device(setup.device, {seen(field), isovalue, rate,
-                                            [&](const DeviceInfo& info) {
-                                                return transform_for(field.geometry(), info, setup);
-                                            },
-                                            progress});
-}
-
-/// In place of a device that was closed and could not be opened again.
-class Gone final : public Device {
-  public:
-    Gone(DeviceInfo info, const std::string& why)
-        : info_(std::move(info)),
-          problem_("it could not be opened again (" + why + "): choose it once more") {}
-
-    DeviceInfo info() const override { return info_; }
-    std::string problem() const override { return problem_; }
-    DeviceReading read(double) override { return {.status = DeviceStatus::lost}; }
-    void write(const Wrench&, double) override {}
-    void stop() noexcept override {}
-
-  private:
-    const DeviceInfo info_;
-    const std::string problem_;
-};
 
 /// After such a command, a hand that stands still may touch what it did not touch before.
 bool moves_contact(const Command& command) {
@@ -141,7 +94,7 @@ Run::Run(std::shared_ptr<Data> data, const Setup& setup, const OnProgress& progr
       field_(make_field(data_->start(), setup.field, setup.render.method.method)) {
     const double isovalue = isovalue_of(data_->loaded(), setup_, progress);
     if (progress) progress(1);
-    auto device = open_for(field_, isovalue, setup_, this, progress);
+    auto device = open_for(setup_, isovalue, progress);
     take(make_session(field_, isovalue, device->info(), setup_, progress));
     hold(std::move(device));
 }
@@ -156,6 +109,7 @@ Run::~Run() {
 
 void Run::start() {
     if (servo_) throw WrongState("a run starts once");
+    hold(std::move(device_));  // this thread may be another than the one that opened it
     launch(session_now());
 }
 
@@ -324,91 +278,6 @@ void Run::send(const Command& asked) {
     isovalue_ = changed.renderer.proxy.isovalue;
     frozen_ = changed.frozen;
     if (moves_contact(command)) data_->rest_brush(*servo_, settings_.tool);
-}
-
-void Run::close_device() {
-    stop_recording();
-    stop();
-    left_behind_ = unanswered();
-    last_resort_.reset();
-    device_.reset();
-}
-
-/// The level that was asked for, or one of the volume where none was.
-double Run::some_isovalue(const OnProgress& progress) const {
-    return std::isfinite(isovalue_) ? isovalue_ : isovalue_of(data_->loaded(), setup_, progress);
-}
-
-void Run::use_device(const devices::DeviceChoice& device, const OnProgress& progress) {
-    started_servo();  // throws before anything has changed
-    left_behind_.clear();
-    Setup setup = setup_;
-    setup.device = device;
-    const DeviceInfo old = device_->info();
-    const double isovalue = some_isovalue(progress);  // a simulated hand goes for its surface
-    if (progress) progress(1);
-    try {
-        auto opened = open_for(field_, isovalue, setup, this, progress, [this] { close_device(); });
-        const bool is_the_same = !device_ || device == setup_.device;
-        const Session fitted = make_session(field_, isovalue, opened->info(), setup, progress);
-        const RendererSettings& fit = fitted.renderer.settings;
-        RendererSettings settings = settings_;
-        settings.device = fit.device;
-        settings.transform = fit.transform;
-        // A limit that was asked for stays; one that was the old device's becomes the new one's.
-        if (settings.force.limit >= old.limits.maximum_force) {
-            settings.force.limit = fit.force.limit;
-        }
-        settings.force.stiffness = std::min(settings.force.stiffness, fit.force.stiffness);
-        Session session{make_renderer(field_, isovalue_, settings), fitted.settings};
-
-        if (device_) close_device();
-        if (is_the_same) {  // its motors are as warm as they were
-            session.renderer.force.motors.warmth = servo_->session().renderer.force.motors.warmth;
-        }
-        setup_ = std::move(setup);
-        hold(std::move(opened));
-        launch(std::move(session));
-    } catch (...) {
-        if (!device_) reopen(isovalue, old);
-        throw;
-    }
-}
-
-/// The device that was closed for a choice which could not be opened. The hand stays frozen if it
-/// was.
-void Run::reopen(double isovalue, const DeviceInfo& old) {
-    const bool frozen = frozen_;
-    try {
-        hold(open_for(field_, isovalue, setup_, this));
-    } catch (const std::exception& error) {
-        hold(std::make_unique<Gone>(old, error.what()));
-    }
-    launch(session_stopped());
-    if (frozen) send(command::Freeze{true});
-}
-
-void Run::use_buttons(const Buttons& buttons) {
-    started_servo();
-    Setup setup = setup_;
-    setup.buttons = buttons;
-    const Session fitted = make_session(field_, some_isovalue({}), device_->info(), setup);
-    stop_recording();
-    stop_servo();
-    session_settings_ = fitted.settings;
-    setup_ = std::move(setup);
-    launch(session_stopped());
-}
-
-void Run::use_field(Solid solid, Interpolation interpolation, std::optional<double> background) {
-    started_servo();
-    Field field(data_->start(), solid, background, interpolation);
-    stop_recording();
-    stop_servo();
-    if (solid != field_.solid()) settings_.layers = nullptr;  // their order is that of the side
-    field_ = std::move(field);
-    settings_.penetrability = no_penetrability();
-    launch(session_stopped());
 }
 
 void Run::record(const std::filesystem::path& path, const OnProgress& progress) {

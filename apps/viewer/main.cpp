@@ -74,9 +74,12 @@ int show(QApplication& application, const app::ViewOptions& options) {
             window, QString::fromStdString(options.screenshot), options.after);
     }
     const int status = application.exec();
+    // From now on a signal ends the wait for a slow reader, too. The force is zero.
+    for (const int s : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(s, SIG_DFL);
+    const int finished = window.finish();
     if (stop_signal != 0) return app::fail("interrupted", app::status_of_signal(stop_signal));
     if (screenshot && screenshot->status() != 0) return screenshot->status();
-    return status != 0 ? status : window.recordings().exit_status();
+    return status != 0 ? status : finished;
 }
 
 }  // namespace

@@ -11,6 +11,10 @@
 #include <QVBoxLayout>
 #include <QVariant>
 
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
 #include "apps/viewer/panel/colours.hpp"
 
 namespace palpate::viewer {
@@ -28,6 +32,72 @@ class ReturnPresses : public QObject {
     }
 };
 
+/// Side by side, on as many lines as the width needs.
+class WrappingRow : public QHBoxLayout {
+  public:
+    using QHBoxLayout::QHBoxLayout;
+
+    bool hasHeightForWidth() const override { return true; }
+    int heightForWidth(int width) const override {
+        if (!fits(width)) return lines({0, 0, width, 0}, false);
+        return QHBoxLayout::hasHeightForWidth() ? QHBoxLayout::heightForWidth(width)
+                                                : QHBoxLayout::sizeHint().height();
+    }
+    int minimumHeightForWidth(int width) const override { return heightForWidth(width); }
+    QSize minimumSize() const override {
+        QSize size(0, QHBoxLayout::minimumSize().height());
+        for (const QLayoutItem* one : shown()) {
+            size.setWidth(std::max(size.width(), one->minimumSize().width()));
+        }
+        return size;
+    }
+    void setGeometry(const QRect& room) override {
+        QHBoxLayout::setGeometry(room);
+        if (!fits(room.width())) lines(room, true);
+    }
+
+  private:
+    bool fits(int width) const { return width >= QHBoxLayout::minimumSize().width(); }
+
+    std::vector<QLayoutItem*> shown() const {
+        std::vector<QLayoutItem*> all;
+        for (int i = 0; i < count(); ++i) {
+            if (!itemAt(i)->isEmpty()) all.push_back(itemAt(i));
+        }
+        return all;
+    }
+
+    /// Returns the height.
+    int lines(const QRect& room, bool place) const {
+        const std::vector<QLayoutItem*> all = shown();
+        int top = room.top();
+        for (std::size_t first = 0, end = 0; first < all.size(); first = end) {
+            int used = -spacing(), height = 0;
+            for (; end < all.size(); ++end) {
+                const int more = spacing() + all[end]->minimumSize().width();
+                if (end > first && used + more > room.width()) break;
+                used += more;
+            }
+            // What is left goes to all alike.
+            const int extra = (room.width() - used) / static_cast<int>(end - first);
+            for (std::size_t i = first; i < end; ++i) {
+                const int width = all[i]->minimumSize().width() + std::max(0, extra);
+                height =
+                    std::max(height, all[i]->hasHeightForWidth() ? all[i]->heightForWidth(width)
+                                                                 : all[i]->sizeHint().height());
+            }
+            int left = room.left();
+            for (std::size_t i = first; i < end && place; ++i) {
+                const int width = all[i]->minimumSize().width() + std::max(0, extra);
+                all[i]->setGeometry({left, top, width, height});
+                left += width + spacing();
+            }
+            top += height + (end < all.size() ? spacing() : 0);
+        }
+        return top - room.top();
+    }
+};
+
 QBoxLayout* filled(QBoxLayout* layout, std::initializer_list<QWidget*> widgets) {
     layout->setContentsMargins(0, 0, 0, 0);
     for (QWidget* widget : widgets) layout->addWidget(widget);
@@ -37,7 +107,7 @@ QBoxLayout* filled(QBoxLayout* layout, std::initializer_list<QWidget*> widgets) 
 }  // namespace
 
 QBoxLayout* row_in(QWidget* owner, std::initializer_list<QWidget*> widgets) {
-    return filled(new QHBoxLayout(owner), widgets);
+    return filled(new WrappingRow(owner), widgets);
 }
 
 QBoxLayout* column_in(QWidget* owner, std::initializer_list<QWidget*> widgets) {
@@ -67,6 +137,7 @@ QFormLayout* form_in(QWidget* owner) {
     auto* form = new QFormLayout(owner);
     form->setContentsMargins(0, 0, 0, 0);
     form->setVerticalSpacing(3);
+    form->setRowWrapPolicy(QFormLayout::WrapLongRows);
     return form;
 }
 

@@ -36,7 +36,8 @@ Widget* named(Widget* widget, const QString& name, const QString& tip = {}) {
     return widget;
 }
 
-/// Lays widgets out in `owner`, side by side or one below the other. More can be added.
+/// Lays widgets out in `owner`, side by side or one below the other. More can be added. A row that
+/// is too narrow goes on in the next line.
 QBoxLayout* row_in(QWidget* owner, std::initializer_list<QWidget*> widgets = {});
 QBoxLayout* column_in(QWidget* owner, std::initializer_list<QWidget*> widgets = {});
 /// A widget that holds these side by side, or one below the other. Of a row, the `wide`-th, from 0,
@@ -44,8 +45,8 @@ QBoxLayout* column_in(QWidget* owner, std::initializer_list<QWidget*> widgets = 
 QWidget* row_of(std::initializer_list<QWidget*> widgets, int wide = -1);
 QWidget* column_of(std::initializer_list<QWidget*> widgets);
 QLabel* label_for(const QString& text, QWidget* field);
-/// A form without margins, dense.
-QFormLayout* form_in(QWidget* owner);
+/// A form without margins, dense. Where it is narrow, labels are above their fields.
+QFormLayout* form_in(QWidget* owner = nullptr);
 /// A row of a form, whose label has the tip, too, and is the field's name for screen readers.
 void add_row(QFormLayout& form, const QString& label, QWidget* field, const QString& tip);
 

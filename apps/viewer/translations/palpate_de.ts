@@ -708,6 +708,13 @@ Der Schieber endet, wo Gerät und Regelkreis sie nicht mehr stabil wiedergeben k
     </message>
 </context>
 <context>
+    <name>palpate::viewer::Connector</name>
+    <message>
+        <source>Connecting to %1</source>
+        <translation>Verbinden mit %1</translation>
+    </message>
+</context>
+<context>
     <name>palpate::viewer::DeviceControls</name>
     <message>
         <source>connecting</source>
@@ -1198,6 +1205,14 @@ Das Volumen wird neu gelesen; Änderungen gehen verloren.</translation>
     <message>
         <source>Layers by label are felt, not a level of the densities.</source>
         <translation>Es werden Schichten nach Labels gefühlt, kein Wert der Dichten.</translation>
+    </message>
+    <message>
+        <source>the samples have two values, so surfaces are stair steps</source>
+        <translation>die Samples haben zwei Werte, daher sind Oberflächen Treppen</translation>
+    </message>
+    <message>
+        <source>rounding to levels of %1 makes terraces of %2 % of the surfaces and tilts them by %3 degrees</source>
+        <translation>Runden auf Stufen von %1 macht %2 % der Oberflächen zu Terrassen und kippt sie um %3 Grad</translation>
     </message>
 </context>
 <context>
@@ -2496,10 +2511,6 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <translation>Schichten</translation>
     </message>
     <message>
-        <source>Pressing through (penetrability)</source>
-        <translation>Durchdrücken (Durchdringbarkeit)</translation>
-    </message>
-    <message>
         <source>Edit</source>
         <translation>Bearbeiten</translation>
     </message>
@@ -2542,6 +2553,10 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
     <message>
         <source>Tool</source>
         <translation>Werkzeug</translation>
+    </message>
+    <message>
+        <source>Pressing through</source>
+        <translation>Durchdrücken</translation>
     </message>
 </context>
 <context>

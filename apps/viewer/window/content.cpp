@@ -4,7 +4,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "apps/viewer/scene/threads.hpp"
 #include "apps/viewer/window/desk.hpp"
+#include "devices/claim.hpp"
 
 namespace palpate::viewer {
 
@@ -62,14 +64,33 @@ void Content::begin_effect() {
                   nullptr);
 }
 
-void Content::start_run(std::shared_ptr<Opened> volume, const std::vector<run::Setup>& hands) {
+LiveHand LiveHand::with(std::shared_ptr<run::Data> data, run::Setup setup,
+                        std::shared_ptr<const int> key, std::function<void()> let_go,
+                        const OnProgress& progress) {
+    setup.open_device = [open = setup.open_device, key, let_go = std::move(let_go)](
+                            const auto& choice, const auto& scene) {
+        const devices::OpenedBy opened_by(key.get(), let_go);
+        return open(choice, scene);
+    };
+    auto run = std::make_unique<run::Run>(std::move(data), setup, progress);
+    return {std::move(key), std::move(run)};
+}
+
+std::vector<LiveHand> make_hands(const Opened& volume, const std::vector<run::Setup>& setups,
+                                 const OnProgress& progress) {
+    const auto data = std::make_shared<run::Data>(volume.loaded, setups.front().playback);
+    std::vector<LiveHand> hands;
+    for (const run::Setup& setup : setups) {
+        hands.push_back(LiveHand::with(data, setup, new_key(), {}, progress));
+    }
+    return hands;
+}
+
+void Content::start_run(std::shared_ptr<Opened> volume, std::vector<LiveHand> hands) {
     close();
-    auto data = std::make_shared<run::Data>(volume->loaded, hands.front().playback);
-    std::vector<std::unique_ptr<run::Run>> runs;
-    for (const run::Setup& hand : hands) runs.push_back(std::make_unique<run::Run>(data, hand));
-    for (const auto& run : runs) run->start();
-    data_ = std::move(data);
-    runs_ = std::move(runs);
+    for (const LiveHand& hand : hands) hand.run->start();
+    data_ = hands.front().run->shared_data();
+    hands_ = std::move(hands);
     volume_ = std::move(volume);
     Q_EMIT run_started();
     Q_EMIT run_changed();
@@ -96,31 +117,72 @@ void Content::choose_hand(int hand) {
     Q_EMIT hand_changed();
 }
 
-void Content::add_hand(const devices::DeviceChoice& device) {
-    if (!live() || hands() == most_hands) return;
+run::Setup Content::setup_with(const devices::DeviceChoice& device) const {
     run::Setup setup = live()->setup();
-    const Field& field = live()->field();
+    setup.open_device = request_.setup.open_device;
     setup.device = device;
+    const Field& field = live()->field();
     setup.field = {field.solid(), field.background(), live()->isovalue(), field.interpolation()};
-    auto added = std::make_unique<run::Run>(data_, setup);
-    added->start();
-    runs_.push_back(std::move(added));
+    // Layers have levels of their own.
+    const auto& layers = setup.render.layers;
+    if (layers && !layers->layers.by_label) setup.field.isovalue.reset();
+    return setup;
+}
+
+void Content::add_hand(LiveHand hand) {
+    if (!live() || hands() == most_hands) return;
+    hand.run->start();
+    hands_.push_back(std::move(hand));
     choose_hand(hands());
     Q_EMIT device_changed();
 }
 
+void Content::replace_hand(LiveHand next, std::function<void()> closed) {
+    const auto same = [&](const LiveHand& hand) { return hand.key == next.key; };
+    const auto at = std::ranges::find_if(hands_, same);
+    if (at == hands_.end()) {
+        if (closed) closed();
+        return;
+    }
+    next.run->start_as(*at->run);
+    std::swap(*at, next);
+    std::vector<LiveHand> old;
+    old.push_back(std::move(next));
+    close_runs(std::move(old), std::move(closed));
+    Q_EMIT run_changed();
+    Q_EMIT device_changed();
+}
+
 void Content::remove_hand() {
-    if (runs_.size() < 2) return;
-    runs_.erase(runs_.begin() + (hand_ - 1));
+    if (hands_.size() < 2) return;
+    const auto removed = hands_.begin() + (hand_ - 1);
+    std::vector<LiveHand> old;
+    old.push_back(std::move(*removed));
+    hands_.erase(removed);
+    close_runs(std::move(old));
     hand_ = 1;
     Q_EMIT run_changed();
     Q_EMIT hand_changed();
 }
 
+void Content::close_runs(std::vector<LiveHand> hands, std::function<void()> closed) {
+    if (hands.empty()) return;
+    std::vector<std::unique_ptr<run::Run>> runs;
+    for (LiveHand& hand : hands) runs.push_back(std::move(hand.run));
+    const auto ended = [this](const RunCloser::Ended& how) {
+        hand_over(this, [this, how] { Q_EMIT runs_ended(how); });
+    };
+    closer_.close(std::move(runs), ended, std::move(closed));
+}
+
+void Content::end_run() {
+    close_runs(std::exchange(hands_, {}));
+}
+
 void Content::close() {
     Q_EMIT closing();
     request();  // with the devices of these runs
-    runs_.clear();
+    end_run();
     data_.reset();
     playbacks_.clear();
     hand_ = 1;
@@ -142,17 +204,20 @@ void Content::set_session(const QString& path) {
     Q_EMIT renamed();
 }
 
-void Content::use_device(const devices::DeviceChoice& device) {
-    live()->use_device(device);
-    Q_EMIT run_changed();
-    Q_EMIT device_changed();
+/// A servo in whose thread a driver hangs cannot begin a session anew.
+void Content::require_devices() const {
+    for (const LiveHand& hand : hands_) {
+        if (hand.run->device_failure() != DeviceFailure::hung) continue;
+        throw std::invalid_argument(hand.run->device().name + ": " + hand.run->device_problem());
+    }
 }
 
 void Content::use_buttons(const run::Buttons& buttons) {
+    require_devices();
     const run::Buttons before = live()->setup().buttons;
     const auto use = [this](const run::Buttons& wanted) {
-        for (const auto& run : runs_) {
-            if (run->setup().buttons != wanted) run->use_buttons(wanted);
+        for (const LiveHand& hand : hands_) {
+            if (hand.run->setup().buttons != wanted) hand.run->use_buttons(wanted);
         }
     };
     try {
@@ -165,7 +230,8 @@ void Content::use_buttons(const run::Buttons& buttons) {
 }
 
 void Content::use_field(Solid solid, Interpolation interpolation) {
-    for (const auto& run : runs_) run->use_field(solid, interpolation);
+    require_devices();
+    for (const LiveHand& hand : hands_) hand.run->use_field(solid, interpolation);
     Q_EMIT field_replaced();
     Q_EMIT run_changed();
 }

@@ -6,6 +6,7 @@
 #include <QObject>
 #include <QString>
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -17,6 +18,7 @@
 #include "apps/viewer/model/layer_set.hpp"
 #include "apps/viewer/model/opening.hpp"
 #include "apps/viewer/model/playback.hpp"
+#include "apps/viewer/model/run_closer.hpp"
 #include "apps/viewer/panel/effect.hpp"
 #include "palpate/run/run.hpp"
 
@@ -37,34 +39,60 @@ struct RunRequest {
     void use_devices_of(const RunRequest& other);
 };
 
+/// A hand of a live run.
+struct LiveHand {
+    /// Opens its device, on any thread; `let_go` closes the one that the hand has, if that is the
+    /// same. Throws as run::Run.
+    static LiveHand with(std::shared_ptr<run::Data> data, run::Setup setup,
+                         std::shared_ptr<const int> key, std::function<void()> let_go,
+                         const OnProgress& progress = {});
+
+    std::shared_ptr<const int> key;  ///< by which devices know the hand that they serve
+    std::unique_ptr<run::Run> run;
+};
+/// For a new hand.
+inline std::shared_ptr<const int> new_key() {
+    return std::make_shared<const int>(0);
+}
+/// The hands of a volume, not started. The same.
+std::vector<LiveHand> make_hands(const Opened& volume, const std::vector<run::Setup>& setups,
+                                 const OnProgress& progress = {});
+
 class Content : public QObject {
     Q_OBJECT
 
   public:
     explicit Content(RunRequest request = {});
-    /// Closes what was open first: a device serves one run. Throws as run::Run; then nothing is
-    /// open.
-    void start_run(std::shared_ptr<Opened> volume, const std::vector<run::Setup>& hands);
+    /// Closes what was open first, and starts these hands.
+    void start_run(std::shared_ptr<Opened> volume, std::vector<LiveHand> hands);
     void start_playback(std::shared_ptr<Opened> volume, std::vector<Playback> hands);
+    /// Devices and recordings are closed on another thread: closer().
     void close();
-    /// As run::Run::use_device, of the chosen hand, and use_buttons and use_field, of all. If they
-    /// throw, the runs have what they had.
-    void use_device(const devices::DeviceChoice& device);
+    /// As run::Run::use_buttons and use_field, of all hands. If they throw, the runs have what they
+    /// had.
     void use_buttons(const run::Buttons& buttons);
     void use_field(Solid solid, Interpolation interpolation);
 
     /// None if nothing is open. They are numbered from 1.
-    int hands() const { return static_cast<int>(std::max(runs_.size(), playbacks_.size())); }
+    int hands() const { return static_cast<int>(std::max(hands_.size(), playbacks_.size())); }
     /// The chosen one.
     int hand() const { return hand_; }
     void choose_hand(int hand);
-    /// One more beside that of a live run, which feels as that began to, at the level that is felt
-    /// now. It is chosen. Throws as run::Run; then nothing has changed.
-    void add_hand(const devices::DeviceChoice& device);
+    /// For a hand that feels with another device what the chosen one began with, at the level that
+    /// it feels now.
+    run::Setup setup_with(const devices::DeviceChoice& device) const;
+    /// One more beside that of a live run. It is chosen.
+    void add_hand(LiveHand hand);
+    /// Goes on with this hand in place of the one with the same key, which ends, as
+    /// run::Run::start_as(). `closed`, from any thread, once its device is closed, or at once where
+    /// there is no such hand any more.
+    void replace_hand(LiveHand next, std::function<void()> closed = {});
+    const std::shared_ptr<const int>& key() const { return hands_[index(hand_)].key; }
     /// The chosen one, of two: its force ends.
     void remove_hand();
     /// Ends the run, forces are zero; emits nothing.
-    void end_run() { runs_.clear(); }
+    void end_run();
+    const RunCloser& closer() const { return closer_; }
 
     /// With the devices and buttons in use.
     RunRequest& request();
@@ -93,7 +121,9 @@ class Content : public QObject {
     void set_session(const QString& path);
     /// Null unless there is a live run, and in it this hand.
     run::Run* live() const { return live(hand_); }
-    run::Run* live(int hand) const { return has(runs_, hand) ? runs_[index(hand)].get() : nullptr; }
+    run::Run* live(int hand) const {
+        return has(hands_, hand) ? hands_[index(hand)].run.get() : nullptr;
+    }
     /// The live run's data, for threads that may outlive the run.
     const std::shared_ptr<run::Data>& data() const { return data_; }
     /// Null unless the run's data can be edited.
@@ -153,12 +183,16 @@ class Content : public QObject {
     void hand_changed();
     /// source() or session() is another one.
     void renamed();
+    /// Runs were closed, which may have taken time.
+    void runs_ended(const RunCloser::Ended& how);
 
   private:
     static std::size_t index(int hand) { return static_cast<std::size_t>(hand - 1); }
     static bool has(const auto& all, int hand) { return index(hand) < all.size(); }
     void begin_effect();
     double time_of(int hand) const;
+    void require_devices() const;
+    void close_runs(std::vector<LiveHand> hands, std::function<void()> closed = {});
 
     RunRequest request_;
     Effect effect_;
@@ -166,11 +200,12 @@ class Content : public QObject {
     std::optional<run::Source> saved_;
     QString session_;
     std::shared_ptr<run::Data> data_;
-    std::vector<std::unique_ptr<run::Run>> runs_;  // of the hands, on the same data
-    std::vector<Playback> playbacks_;              // the same of a recording
-    int hand_ = 1;                                 // the chosen one
+    std::vector<LiveHand> hands_;      // on the same data
+    std::vector<Playback> playbacks_;  // the same of a recording
+    int hand_ = 1;                     // the chosen one
     double time_ = 0;
     std::optional<ShownEdits> overview_;  // of a store
+    RunCloser closer_;
 };
 
 }  // namespace palpate::viewer

@@ -37,22 +37,22 @@ LoopView::LoopView(const Desk& desk) : Desk(desk) {
         auto* label = named(new QLabel, name, tip);
         label->setWordWrap(true);
         grid->addWidget(new QLabel(head), row, 0, Qt::AlignTop);
-        grid->addWidget(label, row, 1, 1, 4);
+        grid->addWidget(label, row, 1, 1, 2);
     };
     add(0, tr("Rate"), "loop_rate", tr("Ticks per second, as measured [Hz]"));
     add(1, tr("Missed"), "loop_missed",
         tr("Deadlines: ticks that did not happen at their time; and forces that were cancelled "
            "because a tick took too long"));
-    grid->addWidget(new QLabel(tr("Lateness")), 3, 0);
-    grid->addWidget(new QLabel(tr("Compute")), 4, 0);
+    grid->addWidget(new QLabel(tr("Lateness")), 2, 1);
+    grid->addWidget(new QLabel(tr("Compute")), 2, 2);
     for (int i = 0; i < 4; ++i) {
         const QString name = QString(percentiles[i]).remove('.');
-        grid->addWidget(new QLabel(percentiles[i]), 2, i + 1);
-        grid->addWidget(named(new QLabel, "lateness_" + name), 3, i + 1);
-        grid->addWidget(named(new QLabel, "compute_" + name), 4, i + 1);
-        grid->setColumnStretch(i + 1, 1);
+        grid->addWidget(new QLabel(percentiles[i]), 3 + i, 0);
+        grid->addWidget(named(new QLabel, "lateness_" + name), 3 + i, 1);
+        grid->addWidget(named(new QLabel, "compute_" + name), 3 + i, 2);
     }
-    add(5, tr("Worst tick"), "loop_worst", {});
+    for (const int column : {1, 2}) grid->setColumnStretch(column, 1);
+    add(7, tr("Worst tick"), "loop_worst", {});
     setToolTip(
         tr("Lateness: how late a tick began, caused by the rest of the machine.\n"
            "Compute: processor time of a tick."));
@@ -138,6 +138,7 @@ DeviceControls::DeviceControls(const Desk& desk)
     : EffectForm(desk.effect()),
       Desk(desk),
       search_(messages_),
+      connector_(desk),
       picker_(named(new QComboBox, "devices",
                     tr("Devices; grey: not found, the tip says what was looked for"))),
       options_(named(new QLineEdit, "device_options")),
@@ -166,13 +167,15 @@ DeviceControls::DeviceControls(const Desk& desk)
     for (const auto changed : {&Content::device_changed, &Content::hand_changed}) {
         connect(&content_, changed, this, [this] { list(findings_); });
     }
+    // Where a device could not be had, the one in use is listed again.
+    connect(&connector_.task(), &BackgroundTask::ended, this, [this] { list(findings_); });
     connect(&content_, &Content::run_changed, this, &DeviceControls::show_buttons);
     list({});
     show_buttons();
 }
 
 void DeviceControls::make_controls() {
-    const auto connect_it = [this] { ask_for_device(&DeviceControls::use_device); };
+    const auto connect_it = [this] { ask_for_device(&Connector::use_device); };
     connect(options_, &QLineEdit::returnPressed, this, connect_it);
     auto* look = button(
         {"refresh_devices", tr("Look again"), tr("Look for devices again; takes about a second")},
@@ -182,7 +185,7 @@ void DeviceControls::make_controls() {
                connect_it);
     auto* add = button({"add_hand", tr("Add as second hand"),
                         tr("One more hand with the device above. Each feels what the other edits")},
-                       [this] { ask_for_device(&DeviceControls::add_hand); });
+                       [this] { ask_for_device(&Connector::add_hand); });
     auto* remove = button(
         {"remove_hand", tr("Remove this hand"), tr("Its force ends; the other hand goes on")},
         [this] { content_.remove_hand(); });
@@ -197,8 +200,7 @@ void DeviceControls::make_controls() {
     scale->setSingleStep(0.1);
     auto* state = row_of({dot_, state_}, 1);
     state->layout()->setSpacing(6);
-    auto* form = new QFormLayout;
-    form->setVerticalSpacing(3);
+    auto* form = form_in();
     form->addRow(tr("State"), state);
     form->addRow(tr("Model"), model_);
     form->addRow(tr("Reach"), workspace_);
@@ -325,28 +327,16 @@ void DeviceControls::choose(int row) {
     picker_->setToolTip(picker_->itemData(row, Qt::ToolTipRole).toString());
 }
 
-void DeviceControls::ask_for_device(void (DeviceControls::*use)(const QString&)) {
+void DeviceControls::ask_for_device(void (Connector::*use)(const devices::DeviceChoice&)) {
     const QString options = options_->text().trimmed();
     const QString option =
         picker_->currentData().toString() + (options.isEmpty() ? "" : ":" + options);
     try {
-        devices::parse_device(option.toStdString());
+        (connector_.*use)(devices::parse_device(option.toStdString()));
+        Q_EMIT nonsense({});
     } catch (const std::invalid_argument& error) {
         Q_EMIT nonsense(QString::fromStdString(error.what()));
-        return;
     }
-    Q_EMIT nonsense({});
-    (this->*use)(option);
-}
-
-void DeviceControls::use_device(const QString& option) {
-    if (!content_.live()) return;
-    messages_.guarded([&] { content_.use_device(devices::parse_device(option.toStdString())); });
-    list(findings_);
-}
-
-void DeviceControls::add_hand(const QString& option) {
-    messages_.guarded([&] { content_.add_hand(devices::parse_device(option.toStdString())); });
 }
 
 void DeviceControls::observe(const Snapshot& now) {

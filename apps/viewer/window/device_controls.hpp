@@ -12,6 +12,7 @@
 
 #include "apps/viewer/panel/effect.hpp"
 #include "apps/viewer/panel/form.hpp"
+#include "apps/viewer/window/connector.hpp"
 #include "apps/viewer/window/desk.hpp"
 #include "apps/viewer/window/messages.hpp"
 #include "palpate/devices/backend.hpp"
@@ -46,10 +47,7 @@ class DeviceControls : public EffectForm, protected Desk {
     explicit DeviceControls(const Desk& desk);
 
     void find_devices();
-    /// Of the chosen hand.
-    void use_device(const QString& option);
-    /// One more, with this device. It is chosen.
-    void add_hand(const QString& option);
+    Connector& connector() { return connector_; }
 
     /// Shows the device where it has changed; a few times a second.
     void observe(const Snapshot& now);
@@ -69,10 +67,11 @@ class DeviceControls : public EffectForm, protected Desk {
     void begin() override;
     void clear() override;
     void choose(int row);
-    void ask_for_device(void (DeviceControls::*use)(const QString&));
+    void ask_for_device(void (Connector::*use)(const devices::DeviceChoice&));
     QString device_words() const;
 
     BackgroundTask search_;
+    Connector connector_;
     QComboBox* picker_;
     QLineEdit* options_;
     QComboBox *clutch_ = nullptr, *deadman_ = nullptr;

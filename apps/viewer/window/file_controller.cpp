@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "apps/viewer/model/opening.hpp"
+#include "apps/viewer/window/connector.hpp"
 #include "apps/viewer/window/content.hpp"
+#include "apps/viewer/window/device_controls.hpp"
 #include "apps/viewer/window/display_controller.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
 #include "apps/viewer/window/isovalue_controls.hpp"
@@ -238,8 +240,7 @@ void FileController::open_volume(const run::Source& source) {
         if (!setup.field.isovalue && !setup.render.layers) {
             setup.field.isovalue = first_isovalue(*opened);
         }
-        feel(std::move(opened), request);
-        panel_.look_controls().use_usual_look();
+        feel(std::move(opened), request, [this] { panel_.look_controls().use_usual_look(); });
     });
 }
 
@@ -255,13 +256,11 @@ void FileController::open_sample() {
     });
 }
 
-void FileController::start(std::shared_ptr<Opened> volume, std::vector<run::Setup> hands) {
-    for (run::Setup& hand : hands) {
-        if (volume->tool && std::holds_alternative<io::MeshSpec>(hand.render.tool)) {
-            hand.render.tool = *volume->tool;
-        }
-    }
-    content_.start_run(std::move(volume), hands);
+bool FileController::loading() const {
+    return reader_.busy() || loader_.busy() || panel_.device_controls().connector().task().busy();
+}
+
+void FileController::tell_felt(const Opened& opened, const std::vector<run::Setup>& hands) {
     QStringList names;
     for (const run::Setup& hand : hands) names << QString::fromStdString(run::text_of(hand.device));
     QString words = names.size() == 1 ? tr("Felt through the device %1").arg(names.front())
@@ -271,16 +270,29 @@ void FileController::start(std::shared_ptr<Opened> volume, std::vector<run::Setu
     }
     messages_.show_done(words);
     Q_EMIT content_.device_changed();
-}
-
-void FileController::feel(std::shared_ptr<Opened> opened, const RunRequest& request) {
-    start(opened, request.setups());
-    if (!request.record.empty()) recordings_.start(QString::fromStdString(request.record));
-    remember_file(QString::fromStdString(io::address_to_keep(opened->loaded.name)));
-    for (const std::string& note : opened->loaded.notes) {
+    remember_file(QString::fromStdString(io::address_to_keep(opened.loaded.name)));
+    for (const std::string& note : opened.loaded.notes) {
         messages_.show_done(QString::fromStdString(note));
     }
-    tell_choices(*opened);
+    tell_choices(opened);
+}
+
+/// As Connector::feel().
+void FileController::feel(std::shared_ptr<Opened> opened, const RunRequest& request,
+                          std::function<void()> then,
+                          std::function<void(const std::exception_ptr&)> otherwise) {
+    std::vector<run::Setup> hands = request.setups();
+    for (run::Setup& hand : hands) {
+        if (opened->tool && std::holds_alternative<io::MeshSpec>(hand.render.tool)) {
+            hand.render.tool = *opened->tool;
+        }
+    }
+    const auto felt = [=, this, record = QString::fromStdString(request.record)] {
+        tell_felt(*opened, hands);
+        if (!record.isEmpty()) recordings_.start(record);
+        then();
+    };
+    panel_.device_controls().connector().feel(opened, hands, felt, std::move(otherwise));
 }
 
 /// Of a store with several channels or times one is felt.
@@ -337,8 +349,9 @@ void FileController::use_grid(const io::GivenGrid& grid) {
     for (SessionHand& other : session.others) forget_labels(other);
     load(session.source,
          [this, session, request = request_for_same()](std::shared_ptr<Opened> opened) {
-             feel_session(std::move(opened), session, request, false);
-             layers_.restore(session, {});
+             feel_session(
+                 std::move(opened), session, request,
+                 [this, session] { layers_.restore(session, {}); }, false);
          });
 }
 
@@ -386,8 +399,9 @@ void FileController::leave_playback() {
     for (int hand = 1; hand <= content_.hands(); ++hand) {
         if (content_.layers(hand)) layers[hand] = content_.layers(hand);
     }
-    feel_session(content_.volume(), session, request_for_same());
-    if (!layers.empty()) content_.use_layers(layers);
+    feel_session(content_.volume(), session, request_for_same(), [this, layers] {
+        if (!layers.empty()) content_.use_layers(layers);
+    });
 }
 
 }  // namespace palpate::viewer

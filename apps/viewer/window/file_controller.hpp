@@ -3,6 +3,7 @@
 
 #include <QObject>
 #include <QString>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -72,7 +73,7 @@ class FileController : public Controller {
     /// Of sessions, layers and heads of recordings; and of volumes.
     BackgroundTask& reader() { return reader_; }
     BackgroundTask& loader() { return loader_; }
-    bool loading() const { return reader_.busy() || loader_.busy(); }
+    bool loading() const;
 
   private:
     using Then = std::function<void(std::shared_ptr<Opened>)>;
@@ -95,10 +96,11 @@ class FileController : public Controller {
     void tell_choices(const Opened& opened);
     void choose_series(const io::SeriesChoice& choice, const run::Source& source, const Then& then);
     void load_or_reuse(const run::Source& source, Then then);
-    void start(std::shared_ptr<Opened> opened, std::vector<run::Setup> hands);
-    void feel(std::shared_ptr<Opened> opened, const RunRequest& request);
+    void feel(std::shared_ptr<Opened> opened, const RunRequest& request, std::function<void()> then,
+              std::function<void(const std::exception_ptr&)> otherwise = {});
+    void tell_felt(const Opened& opened, const std::vector<run::Setup>& hands);
     void feel_session(std::shared_ptr<Opened> opened, const SessionFile& session,
-                      RunRequest request, bool in_place = true);
+                      RunRequest request, std::function<void()> then = {}, bool in_place = true);
     void restore_hands(const SessionFile& session, bool in_place);
     void restore(const RendererSettings& settings, bool in_place);
     RunRequest request_for_same();

@@ -20,6 +20,9 @@
 #include <QUrl>
 
 #include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <utility>
 
 #include "apps/viewer/model/hands.hpp"
@@ -110,14 +113,14 @@ void MainWindow::build() {
     for (BackgroundTask* task :
          {&files_.reader(), &files_.loader(), &panel_->overlay_controls().loader(), &saver_.task(),
           &panel_->layers_controls().reader(), &panel_->tool_controls().reader(),
-          &panel_->tool_controls().maker(), &recordings_.preparing()}) {
+          &panel_->tool_controls().maker(), &recordings_.preparing(),
+          &panel_->device_controls().connector().task()}) {
         layout->addWidget(make_progress_strip(*task));
     }
     setCentralWidget(centre);
-    auto* dock = new QDockWidget(tr("Feel and look"));
-    dock->setObjectName("dock");
-    dock->setWidget(panel_);
-    addDockWidget(Qt::RightDockWidgetArea, dock);
+    dock_ = named(new QDockWidget(tr("Feel and look")), "dock");
+    dock_->setWidget(panel_);
+    addDockWidget(Qt::RightDockWidgetArea, dock_);
     streaming_->setObjectName("streaming");
     statusBar()->addPermanentWidget(streaming_);
     readout_->setObjectName("readout");
@@ -176,12 +179,14 @@ void MainWindow::connect_welcome() {
     connect(&content_, &Content::playback_started, this, show_views);
     // Later: what was closed usually makes room for what is opened.
     const auto show_welcome = [this] {
-        if (content_.volume()) return;
+        if (content_.volume() || panel_->device_controls().connector().task().busy()) return;
         views_->hide();
         welcome_->refresh();
         welcome_->show();
     };
     connect(&content_, &Content::closed, this, show_welcome, Qt::QueuedConnection);
+    connect(&panel_->device_controls().connector().task(), &BackgroundTask::ended, this,
+            show_welcome, Qt::QueuedConnection);
     connect(&panel_->device_controls(), &DeviceControls::devices_found, welcome_,
             &Welcome::set_devices);
     connect(welcome_, &Welcome::open_asked, actions_.find("open"), &QAction::trigger);
@@ -236,6 +241,13 @@ void MainWindow::restore_layout() {
         resize(QSize(1360, 860).boundedTo(0.9 * screen()->availableSize()));
     }
     restoreState(settings.value("state").toByteArray());
+    usual_folds_ = panel_->folded();
+    panel_->fold(settings.value("folded", usual_folds_).toStringList());
+}
+
+void MainWindow::forget_layout() {
+    keeps_layout_ = false;
+    panel_->fold(usual_folds_);
 }
 
 /// Uses all preferences but the appearance, which belongs to the application.
@@ -359,7 +371,6 @@ void MainWindow::end() {
     timer_.stop();
     const bool edits = saver_.unsaved() != nullptr;
     const std::shared_ptr<run::Data> felt = content_.data();
-    recordings_.stop();
     content_.end_run();  // forces first
     if (edits) rescue_edits(*felt);
     QApplication::exit(0);
@@ -373,14 +384,35 @@ void MainWindow::closeEvent(QCloseEvent* event) {
         QSettings settings;
         settings.setValue("geometry", saveGeometry());
         settings.setValue("state", saveState());
+        settings.setValue("folded", panel_->folded());
     }
-    recordings_.stop();
+    timer_.stop();
+    content_.end_run();
     event->accept();
+}
+
+int MainWindow::finish() {
+    constexpr std::chrono::seconds patience{2};
+    content_.closer().wait_for_recordings();
+    QCoreApplication::sendPostedEvents(&content_, QEvent::MetaCall);  // tells what went wrong
+    if (!content_.closer().closes_within(patience)) {
+        std::fflush(nullptr);
+        std::_Exit(app::no_device);
+    }
+    return recordings_.exit_status();
 }
 
 void MainWindow::keyPressEvent(QKeyEvent* event) {
     if (event->key() == Qt::Key_Escape && measuring_.cancel()) return;
     QMainWindow::keyPressEvent(event);
+}
+
+/// A window that has become narrower leaves the room to the picture.
+void MainWindow::resizeEvent(QResizeEvent* event) {
+    QMainWindow::resizeEvent(event);
+    if (!dock_->isFloating() && 4 * dock_->width() > width()) {
+        resizeDocks({dock_}, {panel_->sizeHint().width()}, Qt::Horizontal);
+    }
 }
 
 void MainWindow::dragEnterEvent(QDragEnterEvent* event) {

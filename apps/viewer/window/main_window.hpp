@@ -19,6 +19,7 @@
 #include "apps/viewer/window/recording_controller.hpp"
 #include "apps/viewer/window/save_controller.hpp"
 
+class QDockWidget;
 class QLabel;
 
 namespace palpate::viewer {
@@ -39,6 +40,10 @@ class MainWindow : public QMainWindow {
     ~MainWindow() override;
     /// The same, and ends the program. Unsaved edits are rescued: rescue_edits().
     void end();
+    /// After the window was closed: waits until a recording is complete and the devices are closed.
+    /// Returns the exit status: other than 0 if a recording was lost. If a driver hangs, the
+    /// program ends here.
+    int finish();
 
     FileController& files() { return files_; }
     RecordingController& recordings() { return recordings_; }
@@ -59,7 +64,7 @@ class MainWindow : public QMainWindow {
     /// Opens the dialog; changes are seen at once, and kept.
     void ask_preferences();
     /// Size and layout of this window are not those of the next start.
-    void forget_layout() { keeps_layout_ = false; }
+    void forget_layout();
     /// Throws io::OutputError.
     void save_picture(const QString& path, bool whole_window);
     /// Nothing is being loaded, saved or drawn.
@@ -72,6 +77,7 @@ class MainWindow : public QMainWindow {
     void dragEnterEvent(QDragEnterEvent* event) override;
     void dropEvent(QDropEvent* event) override;
     void keyPressEvent(QKeyEvent* event) override;
+    void resizeEvent(QResizeEvent* event) override;
 
   private:
     void build();
@@ -110,6 +116,7 @@ class MainWindow : public QMainWindow {
     Messages messages_;
     Desk desk_;
     Panel* panel_;
+    QDockWidget* dock_ = nullptr;  // of the panel
     MeasureController measuring_;
     DisplayController display_;
     DetailController details_;
@@ -124,6 +131,7 @@ class MainWindow : public QMainWindow {
     const ActionRow::Condition if_live_ = [this] { return live() != nullptr; };
     QTimer timer_;
     bool keeps_layout_ = true;
+    QStringList usual_folds_;
     int rounds_ = 0, at_rest_ = 0;
     HandSnapshots seen_;  // the last ones that differed from those before
 };

@@ -8,6 +8,7 @@
 #include <QTabWidget>
 #include <QVBoxLayout>
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -79,9 +80,11 @@ Panel::Panel(const Desk& desk, QWidget* parent)
 
 Panel::~Panel() = default;
 
-/// As narrow as its parts allow: the picture needs the room.
+/// At most a quarter of the window, as far as its parts allow: the picture needs the room.
 QSize Panel::sizeHint() const {
-    return {minimumSizeHint().width(), QWidget::sizeHint().height()};
+    const int enough = 24 * fontMetrics().height();
+    const int width = std::min(window()->width() / 4, enough);
+    return {std::max(width, minimumSizeHint().width()), QWidget::sizeHint().height()};
 }
 
 void Panel::build() {
@@ -111,7 +114,7 @@ void Panel::build() {
         page->setAccessibleName(QString(title).remove('&'));
     };
     add(tr("Fee&l"), {part(tr("Layers"), "layers_part", layers_),
-                      folded(tr("Pressing through (penetrability)"), "penetrability_part",
+                      folded(tr("Pressing through"), "penetrability_part",
                              penetrability_section(effect_, isovalue_->chart())),
                       part(tr("Tool"), "tool_part", tool_),
                       folded(tr("Force"), "force_part", force_section(effect_))});
@@ -128,6 +131,20 @@ void Panel::show_section(const QWidget& content) {
     }
     for (auto* section : findChildren<Section*>()) {
         if (section->isAncestorOf(&content)) section->set_open(true);
+    }
+}
+
+QStringList Panel::folded() const {
+    QStringList names;
+    for (const auto* section : findChildren<Section*>()) {
+        if (!section->is_open()) names << section->objectName();
+    }
+    return names;
+}
+
+void Panel::fold(const QStringList& names) {
+    for (auto* section : findChildren<Section*>()) {
+        section->set_open(!names.contains(section->objectName()));
     }
 }
 

@@ -42,6 +42,9 @@ class Panel : public QWidget {
     LoopView& loop_view() { return *loop_; }
     /// The section with this content is unfolded, and its page in front.
     void show_section(const QWidget& content);
+    /// Names of the sections that are folded.
+    QStringList folded() const;
+    void fold(const QStringList& names);
 
   private:
     void build();

@@ -21,7 +21,12 @@ namespace palpate::viewer {
 
 RecordingController::RecordingController(const Desk& desk)
     : Controller(desk), preparing_(messages_) {
-    connect(&content_, &Content::closing, this, &RecordingController::stop);
+    connect(&content_, &Content::closing, this, [this] {
+        preparing_.abandon();
+        if (recording()) recorded_ = std::max(0.0, seconds() - began_);
+        records_ = false;
+    });
+    connect(&content_, &Content::runs_ended, this, &RecordingController::tell_runs_ended);
     connect(&content_, &Content::run_changed, this, &RecordingController::tell_end);
     connect(&content_, &Content::playback_started, this, &RecordingController::tell_playback);
 }
@@ -69,6 +74,7 @@ void RecordingController::begin(const QString& path) {
         for (int hand = 1; hand <= content_.hands(); ++hand) hands.push_back(content_.live(hand));
         run::Run::record_together(hands, path.toStdString());
         began_ = seconds();
+        recorded_ = 0;
         records_ = true;
         messages_.show_done(tr("Recording to %1").arg(path));
     });
@@ -81,7 +87,7 @@ void RecordingController::stop() {
     records_ = false;
     messages_.guarded([&] {
         const int before = std::exchange(exit_status_, app::bad_output);  // unless it is whole
-        const double recorded = std::max(0.0, seconds() - began_);
+        recorded_ = std::max(0.0, seconds() - began_);
         std::exception_ptr lost;
         for (int hand = 1; hand <= content_.hands(); ++hand) {
             try {
@@ -91,9 +97,25 @@ void RecordingController::stop() {
             }
         }
         if (lost) std::rethrow_exception(lost);
-        messages_.show_done(tr("Recorded %1 s").arg(recorded, 0, 'f', 1));
+        tell_recorded();
         exit_status_ = before;
     });
+    Q_EMIT changed();
+}
+
+void RecordingController::tell_recorded() {
+    messages_.show_done(tr("Recorded %1 s").arg(recorded_, 0, 'f', 1));
+}
+
+/// With the runs, their recording ended.
+void RecordingController::tell_runs_ended(const RunCloser::Ended& how) {
+    if (!how.lost.empty()) {
+        exit_status_ = app::bad_output;
+        messages_.show_problem(QString::fromStdString(how.lost), exit_status_);
+    } else if (how.recorded && recorded_ > 0) {
+        tell_recorded();
+    }
+    recorded_ = 0;
     Q_EMIT changed();
 }
 

@@ -6,6 +6,7 @@
 #include <QObject>
 #include <QString>
 
+#include "apps/viewer/model/run_closer.hpp"
 #include "apps/viewer/panel/timeline_view.hpp"
 #include "apps/viewer/window/desk.hpp"
 #include "apps/viewer/window/messages.hpp"
@@ -45,12 +46,15 @@ class RecordingController : public Controller {
     void begin(const QString& path);
     void tell_playback();
     void tell_end();
+    void tell_recorded();
+    void tell_runs_ended(const RunCloser::Ended& how);
     double seconds() const;
 
     BackgroundTask preparing_;
     bool records_ = false;  // as far as the person knows
     int exit_status_ = 0;
-    double began_ = 0;  // [s] of the run
+    double began_ = 0;     // [s] of the run
+    double recorded_ = 0;  // [s] in the recording that was stopped, or ends with its run
 };
 
 class TimelineController : public Controller {

@@ -1,5 +1,7 @@
 // Sessions: opens and saves their files, and feels a volume again as a session says.
+#include <exception>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -18,6 +20,17 @@
 #include "apps/viewer/window/save_controller.hpp"
 
 namespace palpate::viewer {
+namespace {
+
+QString reason_of(const std::exception_ptr& error) {
+    try {
+        std::rethrow_exception(error);
+    } catch (const std::exception& e) {
+        return QString::fromStdString(app::failure_of(e).text);
+    }
+}
+
+}  // namespace
 
 SessionFile FileController::session_now() const {
     SessionFile session;
@@ -94,11 +107,12 @@ void FileController::open_json(const QString& path, const std::optional<UnsavedW
         const SessionFile& session = result->session;
         const Then feel = [this, session, path,
                            request = content_.take_request()](std::shared_ptr<Opened> opened) {
-            feel_session(std::move(opened), session, request);
-            content_.set_session(path);
-            measuring_.set_saved();
-            remember_file(path);
-            layers_.restore(session, path);
+            feel_session(std::move(opened), session, request, [this, session, path] {
+                content_.set_session(path);
+                measuring_.set_saved();
+                remember_file(path);
+                layers_.restore(session, path);
+            });
         };
         const bool outdated = content_.volume() && is_outdated(*content_.volume());
         outdated ? load(session.source, feel) : load_or_reuse(session.source, feel);
@@ -121,7 +135,7 @@ void FileController::open_json(const QString& path, const std::optional<UnsavedW
 /// Devices and buttons are those of the command line, else the session's; where they cannot be had,
 /// those chosen in this window.
 void FileController::feel_session(std::shared_ptr<Opened> opened, const SessionFile& session,
-                                  RunRequest request, bool in_place) {
+                                  RunRequest request, std::function<void()> then, bool in_place) {
     run::Setup& setup = request.setup;
     setup.field = {session.solid, session.background, session.isovalue, session.interpolation};
     if (!request.device) {
@@ -138,20 +152,26 @@ void FileController::feel_session(std::shared_ptr<Opened> opened, const SessionF
     if (!setup.render.step_budget && budget != ProxySettings{}.step_budget) {
         setup.render.step_budget = budget;
     }
-    try {
-        feel(opened, request);
-    } catch (const std::exception& e) {
+    const auto felt = [=, this] {
+        panel_.look_controls().use_usual_look();
+        restore_hands(session, in_place);
+        display_.restore_view(session);
+        if (then) then();
+    };
+    feel(opened, request, felt, [=, this](const std::exception_ptr& error) {
         const RunRequest& chosen = content_.request();
-        if (setup.device == chosen.setup.device && request.others == chosen.others) throw;
-        const QString why = QString::fromStdString(app::failure_of(e).text);
-        request.use_devices_of(chosen);
-        feel(opened, request);
-        messages_.show_done(tr("%1; felt through the device %2")
-                                .arg(why, QString::fromStdString(run::text_of(setup.device))));
-    }
-    panel_.look_controls().use_usual_look();
-    restore_hands(session, in_place);
-    display_.restore_view(session);
+        if (request.setup.device == chosen.setup.device && request.others == chosen.others) {
+            std::rethrow_exception(error);
+        }
+        RunRequest other = request;
+        other.use_devices_of(chosen);
+        feel(opened, other, [=, this] {
+            felt();
+            messages_.show_done(tr("%1; felt through the device %2")
+                                    .arg(reason_of(error),
+                                         QString::fromStdString(run::text_of(other.setup.device))));
+        });
+    });
 }
 
 void FileController::restore_hands(const SessionFile& session, bool in_place) {

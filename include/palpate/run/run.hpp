@@ -5,6 +5,7 @@
 
 #include <deque>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -54,6 +55,12 @@ class Run {
     /// Starts the servo. Throws WrongState the second time, std::system_error if the system gives
     /// no thread.
     void start();
+    /// The same in place of `before`, a run on the same data whose servo ends: with all settings
+    /// requested there, lowered where this device cannot render them, and on the same field. If the
+    /// device is the same, its motors are as warm as they were, and the hand stays frozen. So a
+    /// program whose thread must not wait for a driver may construct a run on another thread, and
+    /// destroy the one before there. Throws as make_renderer(). `before` then continues.
+    void start_as(Run& before);
     bool started() const { return servo_ != nullptr; }  ///< also after stop()
     /// On data with Pace::by_steps, whose servo has no thread: computes one tick, a period after
     /// the one before, and does the work that is due for the data and the recording. The same steps
@@ -146,9 +153,14 @@ class Run {
 
   private:
     Servo& started_servo() const;
+    std::unique_ptr<Device> open_for(const Setup& setup, double isovalue,
+                                     const OnProgress& progress = {},
+                                     const std::function<void()>& let_go = {}) const;
     void hold(std::unique_ptr<Device> device);
     void close_device();
     void reopen(double isovalue, const DeviceInfo& old);
+    Session session_for(const RendererSettings& fit, const SessionSettings& settings,
+                        const DeviceInfo& old) const;
     double some_isovalue(const OnProgress& progress) const;
     void take(const Session& session);
     void launch(Session session);

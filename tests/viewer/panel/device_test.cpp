@@ -21,6 +21,14 @@ class Devices : public PanelFixture {
   protected:
     QComboBox* picker() { return find<QComboBox>("devices"); }
     DeviceControls& controls() { return panel.device_controls(); }
+    /// Presses a button that opens a device, until that is done or refused.
+    void connect_by(const char* name) {
+        press(name);
+        wait_until_connected();
+    }
+    void wait_until_connected() {
+        wait_until([this] { return !controls().connector().task().busy(); });
+    }
     std::string used() { return run::text_of(content.live()->setup().device); }
 };
 
@@ -36,13 +44,14 @@ TEST_F(Devices, connecting_goes_on_with_the_device_of_this_name_and_these_option
     controls().list(findings);
     picker()->setFocus();
     QTest::keyClick(picker(), Qt::Key_Down);
-    press("connect_device");
+    connect_by("connect_device");
     EXPECT_EQ(used(), "mouse");
     auto* options = find<QLineEdit>("device_options");
     EXPECT_EQ(options->placeholderText(), "speed=600 [mm/s]");
     options->setFocus();
     QTest::keyClicks(options, "speed=300");
     QTest::keyClick(options, Qt::Key_Return);
+    wait_until_connected();
     EXPECT_EQ(used(), "mouse:speed=300");
 }
 
@@ -59,7 +68,7 @@ TEST_F(Devices, a_device_that_was_not_found_says_why_and_can_be_tried_elsewhere)
     QTest::keyClick(picker(), Qt::Key_End);
     EXPECT_EQ(find<QLabel>("device_missing")->text(), "no Inverse Service at localhost:10001");
     QTest::keyClicks(find<QLineEdit>("device_options"), "host=127.0.0.1,port=1");
-    press("connect_device");
+    connect_by("connect_device");
     EXPECT_TRUE(messages.problem().contains("127.0.0.1:1")) << messages.problem().toStdString();
     EXPECT_EQ(used(), "simulated:seed=7") << "it cannot be had: the one before goes on";
     EXPECT_TRUE(picker()->currentText().startsWith("simulated"));
@@ -80,7 +89,7 @@ TEST_F(Devices, invalid_options_are_refused_in_the_panel) {
     feel("mouse");
     controls().list(findings);
     QTest::keyClicks(find<QLineEdit>("device_options"), "speed=1,speed=2");
-    press("connect_device");
+    connect_by("connect_device");
     EXPECT_EQ(used(), "mouse");
     EXPECT_TRUE(message("device_part").contains("speed"));
 }
@@ -90,7 +99,7 @@ TEST_F(Devices, one_is_added_as_a_second_hand_and_removed_again) {
     controls().list({});
     EXPECT_FALSE(find<QPushButton>("remove_hand")->isVisible());
     QTest::keyClicks(find<QLineEdit>("device_options"), "speed=300");
-    press("add_hand");
+    connect_by("add_hand");
     ASSERT_EQ(content.hands(), 2);
     EXPECT_EQ(content.hand(), 2);
     EXPECT_EQ(used(), "mouse:speed=300");

@@ -98,8 +98,9 @@ class PanelFixture : public testing::Test {
             setup.real_time = false;
             setup.field.isovalue = 100.0;
         }
-        const auto source = run::source_named(volume);
-        content.start_run(std::make_shared<Opened>(open(source, [](double) {})), hands);
+        const auto opened =
+            std::make_shared<Opened>(open(run::source_named(volume), [](double) {}));
+        content.start_run(opened, make_hands(*opened, hands));
         Q_EMIT content.device_changed();
     }
     void feel(const std::string& device, const std::string& volume = "synthetic:sphere:24x24x24") {

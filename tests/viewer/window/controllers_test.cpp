@@ -37,8 +37,9 @@ class Controllers : public testing::Test {
         setup.device = {"mouse", {}};
         setup.real_time = false;
         setup.field.isovalue = 100.0;
-        content.start_run(std::make_shared<Opened>(open(run::source_named(volume), [](double) {})),
-                          {setup});
+        const auto opened =
+            std::make_shared<Opened>(open(run::source_named(volume), [](double) {}));
+        content.start_run(opened, make_hands(*opened, {setup}));
     }
 
     QWidget parent;

@@ -67,7 +67,7 @@ TEST_F(Failures, a_hand_stays_frozen_when_its_device_is_chosen_again_and_refused
     press(Qt::Key_F);
     wait_until([&] { return now().session.frozen; });
     const std::int64_t before = now().number;
-    window_->panel().device_controls().use_device("simulated:hand=hold");
+    use_device("simulated:hand=hold");
     EXPECT_EQ(window_->messages().problem(), "no such option");
     window_->messages().forget();
     wait_until([&] { return now().number != before && now().session.frozen; });

@@ -396,12 +396,12 @@ TEST_F(Window, a_session_file_brings_back_what_was_set) {
 TEST_F(Window, another_device_takes_over_with_what_was_set) {
     feel(large_sphere);
     window_->content().effect().request(command::Isovalue{90});
-    window_->panel().device_controls().use_device("simulated:hand=press");
+    use_device("simulated:hand=press");
     ASSERT_NE(window_->live(), nullptr);
     EXPECT_EQ(window_->live()->mouse(), nullptr);
     EXPECT_EQ(window_->live()->isovalue(), 90);
     wait_until([&] { return force() > 0.2; });
-    window_->panel().device_controls().use_device("nonsense");
+    use_device("nonsense");
     EXPECT_TRUE(window_->messages().problem().contains("nonsense"));
     EXPECT_EQ(run::text_of(window_->live()->setup().device), "simulated:hand=press");
 }

@@ -108,7 +108,7 @@ TEST_F(TwoHands, one_whose_device_fails_ends_alone_and_the_window_says_which) {
     // Once it is there again it goes on.
     fails_ = false;
     press(Qt::Key_N);
-    window_->panel().device_controls().use_device(QString::fromStdString(circles));
+    use_device(circles);
     wait_until([&] { return content().snapshot(2) && force_of(2) > 0.05; });
     wait_until([&] { return !button_of(2).text().startsWith(QString::fromUtf8("\u26A0")); });
 }
@@ -182,7 +182,7 @@ TEST_F(TwoHands, a_hand_is_added_and_removed_at_any_time) {
     feel(felt_by_two);
     EXPECT_FALSE(button_of(1).isVisible());
     EXPECT_TRUE(window_->probe().possible());
-    window_->panel().device_controls().add_hand(QString::fromStdString(circles));
+    add_hand(circles);
     ASSERT_EQ(content().hands(), 2);
     EXPECT_EQ(content().hand(), 2);
     EXPECT_FALSE(window_->probe().possible()) << "the mouse moves the hand that is chosen";
@@ -200,7 +200,7 @@ TEST_F(TwoHands, a_hand_is_added_and_removed_at_any_time) {
     EXPECT_FALSE(button_of(1).isVisible());
     wait_until_settled();
     EXPECT_FALSE(part<QLabel>("hand_number_1").isVisible());
-    window_->panel().device_controls().add_hand("haply:host=127.0.0.1,port=1");
+    add_hand("haply:host=127.0.0.1,port=1");
     EXPECT_EQ(content().hands(), 1) << "it cannot be had";
 }
 
@@ -234,7 +234,7 @@ TEST_F(TwoHands, what_is_read_again_keeps_the_device_that_was_chosen_after_the_s
     open_window(request);
     window_->files().open_path(felt_by_two);
     wait_until([&] { return window_->live() != nullptr; });
-    window_->panel().device_controls().use_device("mouse");
+    use_device("mouse");
     ASSERT_NE(window_->live()->mouse(), nullptr);
     const auto volume = content().volume();
     window_->files().dequantize(true);

@@ -166,7 +166,7 @@ TEST_F(LabelsInWindow, a_session_keeps_them_also_when_it_is_moved_with_its_data)
 TEST_F(LabelsInWindow, of_the_second_hand_come_back_from_a_session) {
     feel("synthetic:sphere:48x48x48");
     open_labels();
-    window_->panel().device_controls().add_hand("mouse");
+    add_hand("mouse");
     feel_open_labels();
     const auto layers_of = [&](int hand) {
         return window_->content().live(hand)->settings().layers;

@@ -121,6 +121,20 @@ class InWindow : public testing::Test {
         wait_until(is_settled);
     }
 
+    /// Goes on with another device, or adds a hand, until that is done or refused.
+    void use_device(const std::string& device) {
+        connector().use_device(devices::parse_device(device));
+        wait_until_connected();
+    }
+    void add_hand(const std::string& device) {
+        connector().add_hand(devices::parse_device(device));
+        wait_until_connected();
+    }
+    Connector& connector() const { return window_->panel().device_controls().connector(); }
+    void wait_until_connected() const {
+        viewer::wait_until([this] { return !connector().task().busy(); });
+    }
+
     /// Records from now on.
     void record(const char* name) {
         window_->recordings().start(scratch(name));

@@ -85,7 +85,7 @@ TEST_F(Work, that_was_saved_is_not_taken_for_another_volume_that_was_opened_mean
     const auto other = std::make_shared<Opened>(
         open(run::source_named("synthetic:torus:32x32x16"), [](double) {}));
     window_->saver().save(scratch("sphere.nii.gz"));
-    window_->content().start_run(other, {setup_with("mouse")});
+    window_->content().start_run(other, make_hands(*other, {setup_with("mouse")}));
     wait_until([&] { return !window_->saver().saving(); });
     EXPECT_TRUE(QFile::exists(scratch("sphere.nii.gz")));
     EXPECT_EQ(run::name_of(window_->content().source()), "synthetic:torus:32x32x16");

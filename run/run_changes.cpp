@@ -1,0 +1,169 @@
+// Continues a run with another device, other buttons or another field.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "devices/claim.hpp"
+#include "io/system/number.hpp"
+#include "palpate/run/run.hpp"
+
+namespace palpate::run {
+namespace {
+
+/// The field that simulated hands see. For a store, of which little may be in memory, this is the
+/// overview.
+Field seen(const Field& field) {
+    if (!field.samples().resident()) return field;
+    return Field(flattened(field.samples()), field.solid(), field.background(),
+                 field.interpolation());
+}
+
+/// In place of a device that was closed and could not be opened again.
+class Gone final : public Device {
+  public:
+    Gone(DeviceInfo info, const std::string& why)
+        : info_(std::move(info)),
+          problem_("it could not be opened again (" + why + "): choose it once more") {}
+
+    DeviceInfo info() const override { return info_; }
+    std::string problem() const override { return problem_; }
+    DeviceReading read(double) override { return {.status = DeviceStatus::lost}; }
+    void write(const Wrench&, double) override {}
+    void stop() noexcept override {}
+
+  private:
+    const DeviceInfo info_;
+    const std::string problem_;
+};
+
+}  // namespace
+
+/// If the device is the one that this run has, `let_go` closes it first.
+std::unique_ptr<Device> Run::open_for(const Setup& setup, double isovalue,
+                                      const OnProgress& progress,
+                                      const std::function<void()>& let_go) const {
+    const double rate = setup.render.rate.value_or(usual_rate);
+    if (!(rate >= 250 && rate <= 8000)) {
+        std::string text;
+        io::append_number(text, rate);
+        throw std::invalid_argument("rate " + text + " Hz: a live session runs at 250 to 8000 Hz");
+    }
+    const devices::OpenedBy opened_by(this, let_go);
+    return setup.open_device(
+        setup.device,
+        {seen(field_), isovalue, rate,
+         [&](const DeviceInfo& info) { return transform_for(field_.geometry(), info, setup); },
+         progress});
+}
+
+void Run::start_as(Run& before) {
+    if (servo_) throw WrongState("a run starts once");
+    before.started_servo();  // throws before anything has changed
+    Session session = before.session_for(settings_, session_settings_, before.device());
+    before.stop_servo();
+    before.running_ = false;
+    before.device_->stop();
+    const bool is_the_same = setup_.device == before.setup_.device;
+    if (is_the_same && before.device_failure() != DeviceFailure::hung) {
+        session.renderer.force.motors.warmth =
+            before.servo_->session().renderer.force.motors.warmth;
+    }
+    field_ = before.field_;
+    hold(std::move(device_));
+    launch(std::move(session));
+    if (is_the_same && before.frozen_) send(command::Freeze{true});
+}
+
+void Run::close_device() {
+    stop_recording();
+    stop();
+    left_behind_ = unanswered();
+    last_resort_.reset();
+    device_.reset();
+}
+
+/// The level that was asked for, or one of the volume where none was.
+double Run::some_isovalue(const OnProgress& progress) const {
+    return std::isfinite(isovalue_) ? isovalue_ : isovalue_of(data_->loaded(), setup_, progress);
+}
+
+void Run::use_device(const devices::DeviceChoice& device, const OnProgress& progress) {
+    started_servo();  // throws before anything has changed
+    left_behind_.clear();
+    Setup setup = setup_;
+    setup.device = device;
+    const DeviceInfo old = device_->info();
+    const double isovalue = some_isovalue(progress);  // a simulated hand goes for its surface
+    if (progress) progress(1);
+    try {
+        auto opened = open_for(setup, isovalue, progress, [this] { close_device(); });
+        const bool is_the_same = !device_ || device == setup_.device;
+        const Session fitted = make_session(field_, isovalue, opened->info(), setup, progress);
+        Session session = session_for(fitted.renderer.settings, fitted.settings, old);
+        if (device_) close_device();
+        if (is_the_same) {  // its motors are as warm as they were
+            session.renderer.force.motors.warmth = servo_->session().renderer.force.motors.warmth;
+        }
+        setup_ = std::move(setup);
+        hold(std::move(opened));
+        launch(std::move(session));
+    } catch (...) {
+        if (!device_) reopen(isovalue, old);
+        throw;
+    }
+}
+
+/// A new session with everything that was asked for, lowered where the device for which `fit` was
+/// made cannot render it.
+Session Run::session_for(const RendererSettings& fit, const SessionSettings& session,
+                         const DeviceInfo& old) const {
+    RendererSettings settings = settings_;
+    settings.device = fit.device;
+    settings.transform = fit.transform;
+    // A limit that was asked for stays; one that was the old device's becomes the new one's.
+    if (settings.force.limit >= old.limits.maximum_force) settings.force.limit = fit.force.limit;
+    settings.force.stiffness = std::min(settings.force.stiffness, fit.force.stiffness);
+    return {make_renderer(field_, isovalue_, settings), session};
+}
+
+/// The device that was closed for a choice which could not be opened. The hand stays frozen if it
+/// was.
+void Run::reopen(double isovalue, const DeviceInfo& old) {
+    const bool frozen = frozen_;
+    try {
+        hold(open_for(setup_, isovalue));
+    } catch (const std::exception& error) {
+        hold(std::make_unique<Gone>(old, error.what()));
+    }
+    launch(session_stopped());
+    if (frozen) send(command::Freeze{true});
+}
+
+void Run::use_buttons(const Buttons& buttons) {
+    started_servo();
+    Setup setup = setup_;
+    setup.buttons = buttons;
+    const Session fitted = make_session(field_, some_isovalue({}), device_->info(), setup);
+    stop_recording();
+    stop_servo();
+    session_settings_ = fitted.settings;
+    setup_ = std::move(setup);
+    launch(session_stopped());
+}
+
+void Run::use_field(Solid solid, Interpolation interpolation, std::optional<double> background) {
+    started_servo();
+    Field field(data_->start(), solid, background, interpolation);
+    stop_recording();
+    stop_servo();
+    if (solid != field_.solid()) settings_.layers = nullptr;  // their order is that of the side
+    field_ = std::move(field);
+    settings_.penetrability = no_penetrability();
+    launch(session_stopped());
+}
+
+}  // namespace palpate::run

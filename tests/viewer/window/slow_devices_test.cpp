@@ -1,0 +1,264 @@
+// Drivers that do not answer and readers that are slow: the window goes on.
+#include <sys/stat.h>
+#include <QLabel>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <fstream>
+#include <iterator>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "devices/claim.hpp"
+#include "viewer/window/window_fixture.hpp"
+
+namespace palpate::viewer::test {
+namespace {
+
+constexpr const char* felt_slowly = "synthetic:sphere:40x40x40";
+
+/// A call that does not return until it may. For long only, so that a window that waits fails and
+/// does not hang.
+class Gate {
+  public:
+    void close() { set(false); }
+    void open() { set(true); }
+    void pass() {
+        std::unique_lock lock(mutex_);
+        if (!is_open_) ++waiting_;
+        changed_.wait_for(lock, std::chrono::seconds(20), [this] { return is_open_; });
+    }
+    /// Calls that have been held up.
+    int waiting() const { return waiting_; }
+
+  private:
+    void set(bool open) {
+        const std::lock_guard lock(mutex_);
+        is_open_ = open;
+        changed_.notify_all();
+    }
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    bool is_open_ = true;
+    std::atomic<int> waiting_{0};
+};
+
+/// Where a driver can hang.
+struct Driver {
+    Gate opens, reads, closes;
+    std::atomic<bool> keeps_force{false};
+    std::atomic<int> open{0}, opened{0};  // now; ever
+};
+
+/// The one device that this driver has.
+class Driven final : public Device {
+  public:
+    Driven(Driver& driver, const devices::DeviceScene& scene)
+        : driver_(driver),
+          claim_("the one device"),
+          device_(devices::open_device(devices::parse_device("simulated:hand=hold"), scene)) {
+        driver_.opens.pass();
+        ++driver_.open;
+        ++driver_.opened;
+    }
+    ~Driven() override {
+        driver_.closes.pass();
+        --driver_.open;
+    }
+    DeviceInfo info() const override { return device_->info(); }
+    DeviceReading read(double time) override {
+        driver_.reads.pass();
+        return device_->read(time);
+    }
+    void write(const Wrench& wrench, double time) override { device_->write(wrench, time); }
+    void stop() noexcept override { device_->stop(); }
+    bool is_stopping() const noexcept override { return driver_.keeps_force; }
+
+  private:
+    Driver& driver_;
+    const devices::Claim claim_;
+    const std::unique_ptr<Device> device_;
+};
+
+class SlowDevices : public InWindow {
+  protected:
+    void TearDown() override {
+        for (Gate* gate : {&driver_.opens, &driver_.reads, &driver_.closes}) gate->open();
+        InWindow::TearDown();
+    }
+    /// The device "haply" is the driver's.
+    run::Setup setup(const std::string& device) {
+        run::Setup made = setup_with(device);
+        made.open_device = [this](const auto& choice,
+                                  const auto& scene) -> std::unique_ptr<Device> {
+            if (choice.name != "haply") return devices::open_device(choice, scene);
+            if (choice.options.contains("wrong")) {
+                const Driven closed(driver_, scene);
+                throw devices::DeviceError("wrong options");
+            }
+            return std::make_unique<Driven>(driver_, scene);
+        };
+        return made;
+    }
+    void feel_with(const std::string& device) {
+        open_window(setup(device));
+        feel(felt_slowly);
+    }
+    std::string used() const { return run::text_of(window_->live()->setup().device); }
+    /// The window has handled what was to come later.
+    void expect_it_answers() {
+        bool answers = false;
+        QTimer::singleShot(0, window_.get(), [&] { answers = true; });
+        viewer::wait_until([&] { return answers; });
+        press(Qt::Key_F);
+        if (window_->live()) wait_until([&] { return now().session.frozen; });
+        press(Qt::Key_F);
+    }
+    void connect(const char* device) { connector().use_device(devices::parse_device(device)); }
+
+    Driver driver_;
+};
+
+TEST_F(SlowDevices, that_are_opened_with_a_volume_leave_the_window_free) {
+    open_window(setup("haply"));
+    driver_.opens.close();
+    window_->files().open_path(felt_slowly);
+    wait_until([&] { return driver_.opens.waiting() == 1; });
+    expect_it_answers();
+    ASSERT_TRUE(late_strip());
+    EXPECT_EQ(late_strip()->findChild<QLabel*>()->text(), "Connecting to haply");
+    EXPECT_FALSE(window_->settled());
+    driver_.opens.open();
+    wait_until([&] { return window_->live() && window_->live()->snapshot(); });
+    EXPECT_EQ(used(), "haply");
+    EXPECT_EQ(strip(), nullptr);
+}
+
+TEST_F(SlowDevices, that_are_chosen_leave_the_hand_with_its_own_until_they_answer) {
+    feel_with("mouse");
+    driver_.opens.close();
+    connect("haply");
+    wait_until([&] { return driver_.opens.waiting() == 1; });
+    expect_it_answers();
+    EXPECT_EQ(used(), "mouse");
+    driver_.opens.open();
+    wait_until([&] { return used() == "haply"; });
+    wait_for_ticks(5);
+}
+
+TEST_F(SlowDevices, can_be_given_up) {
+    feel_with("mouse");
+    driver_.opens.close();
+    connect("haply");
+    wait_until([&] { return driver_.opens.waiting() == 1; });
+    late_strip();
+    cancel_task();
+    driver_.opens.open();
+    wait_until_connected();
+    EXPECT_EQ(used(), "mouse");
+    EXPECT_EQ(window_->messages().problem(), "");
+}
+
+TEST_F(SlowDevices, that_are_closed_leave_the_window_free) {
+    feel_with("haply");
+    driver_.closes.close();
+    connect("mouse");
+    wait_until([&] { return used() == "mouse" && driver_.closes.waiting() == 1; });
+    expect_it_answers();
+    EXPECT_EQ(driver_.open, 1);
+    driver_.closes.open();
+    wait_until([&] { return driver_.open == 0; });
+}
+
+TEST_F(SlowDevices, that_hang_while_they_are_read_can_be_left) {
+    feel_with("haply");
+    driver_.reads.close();
+    wait_until([&] { return window_->live()->device_failure() == DeviceFailure::hung; });
+    EXPECT_THROW(window_->content().use_buttons({}), std::invalid_argument);
+    EXPECT_THROW(window_->content().use_field(Solid::below, Interpolation::linear),
+                 std::invalid_argument);
+    connect("mouse");
+    wait_until([&] { return used() == "mouse"; });
+    wait_for_ticks(5);
+    expect_it_answers();
+    EXPECT_EQ(driver_.open, 1);
+    driver_.reads.open();
+    wait_until([&] { return driver_.open == 0; });
+}
+
+TEST_F(SlowDevices, that_may_still_have_a_force_are_named) {
+    feel_with("haply");
+    driver_.keeps_force = true;
+    connect("mouse");
+    viewer::wait_until([&] { return !window_->messages().problem().isEmpty(); });
+    EXPECT_TRUE(window_->messages().problem().contains("its force may still be on"));
+    EXPECT_EQ(used(), "mouse");
+}
+
+TEST_F(SlowDevices, are_closed_before_they_are_opened_again) {
+    feel_with("haply");
+    window_->content().effect().request(command::Isovalue{90});
+    driver_.closes.close();
+    connect("haply:port=2");
+    wait_until([&] { return driver_.closes.waiting() == 1; });
+    expect_it_answers();
+    EXPECT_EQ(now().session.device.status, DeviceStatus::lost);
+    EXPECT_EQ(force(), 0);
+    driver_.closes.open();
+    wait_until([&] { return used() == "haply:port=2"; });
+    EXPECT_EQ(window_->live()->isovalue(), 90);
+    EXPECT_EQ(driver_.open, 1);
+    wait_until([&] { return now().session.device.status == DeviceStatus::ready; });
+}
+
+TEST_F(SlowDevices, go_on_as_they_were_if_their_options_are_refused) {
+    feel_with("haply:port=2");
+    use_device("haply:wrong=1");
+    EXPECT_EQ(window_->messages().problem(), "wrong options");
+    EXPECT_EQ(used(), "haply:port=2");
+    EXPECT_EQ(driver_.opened, 3);
+    wait_until([&] { return now().session.device.status == DeviceStatus::ready; });
+}
+
+/// Reads a pipe slowly: only its first line, until it may read on.
+class SlowReader {
+  public:
+    explicit SlowReader(const std::string& path)
+        : thread_([this, path] {
+              std::ifstream in(path);
+              std::getline(in, text);
+              gate.pass();
+              text += '\n' + std::string(std::istreambuf_iterator<char>(in), {});
+          }) {
+        gate.close();
+    }
+    void join() { thread_.join(); }
+
+    Gate gate;
+    std::string text;  // once it was joined
+
+  private:
+    std::jthread thread_;
+};
+
+TEST_F(SlowDevices, a_slow_reader_of_a_recording_does_not_keep_the_window_open) {
+    feel_with("simulated:hand=hold");
+    const std::string pipe = scratch("pipe").toStdString();
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    SlowReader reader(pipe);
+    record("pipe");
+    ASSERT_TRUE(window_->recordings().recording());
+    wait_for_ticks(600);  // more than a pipe holds
+    window_->close();
+    EXPECT_FALSE(window_->isVisible());
+    EXPECT_EQ(window_->live(), nullptr) << "its force has ended";
+    EXPECT_EQ(reader.gate.waiting(), 1) << "the window has waited for it";
+    reader.gate.open();
+    EXPECT_EQ(window_->finish(), 0);
+    reader.join();
+    EXPECT_NE(reader.text.find("\n# end "), std::string::npos) << "the recording is complete";
+}
+
+}  // namespace
+}  // namespace palpate::viewer::test
