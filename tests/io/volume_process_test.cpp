@@ -146,6 +146,23 @@ TEST_F(HelperProcess, a_file_that_has_got_its_name_is_written_and_not_cancelled)
     EXPECT_TRUE(std::filesystem::exists(written));
 }
 
+TEST_F(HelperProcess, of_palpate_says_before_the_end_that_a_file_gets_its_name) {
+    if (!std::filesystem::exists("/proc/self/exe")) GTEST_SKIP() << "needs /proc";
+    const Volume volume(Geometry{Index3(2, 2, 2)}, std::vector<std::uint8_t>(8));
+    for (const char* name : {"b.nrrd", "b.mha", "b.nii.gz", "b.tif"}) {
+        const auto reports = folder_ / (std::string(name) + ".reports");
+        const auto options = with_script<WriteOptions>(folder_, "exec '" + real_helper().string() +
+                                                                    "' \"$@\" 4> >(exec tee '" +
+                                                                    reports.string() + "' >&4)");
+        write_volume(volume, folder_ / name, options);
+        EXPECT_TRUE(std::filesystem::exists(folder_ / name));
+        const auto at = [&](const char* report) { return bytes_of(reports).find(report); };
+        constexpr auto none = std::string::npos;
+        ASSERT_TRUE(support::comes_true([&] { return at("{\"done\":") != none; })) << name;
+        EXPECT_LT(at("{\"placing\":true}"), at("{\"done\":")) << name;
+    }
+}
+
 TEST_F(HelperProcess, an_exception_from_progress_ends_the_helper) {
     ReadOptions options = with_script(folder_, "exec sleep 100");
     struct Cancelled {};

@@ -267,13 +267,8 @@ TEST(write_volume, full_disk_is_an_error_and_leaves_nothing) {
     const Volume volume = random_volume<std::int16_t>(random, g);
     // A helper whose files may have no more than 64 blocks of 1 kB.
     const auto small = folder / "small-disk";
-    const char* const helper = std::getenv("PALPATE_IO_HELPER");
-    const std::string real = helper != nullptr
-                                 ? helper
-                                 : (std::filesystem::read_symlink("/proc/self/exe").parent_path() /
-                                    "../../libexec/palpate/palpate-io-helper")
-                                       .string();
-    put_bytes(small, "#!/bin/bash\nulimit -f 64\ntrap '' XFSZ\nexec '" + real + "' \"$@\"\n");
+    put_bytes(small, "#!/bin/bash\nulimit -f 64\ntrap '' XFSZ\nexec '" + real_helper().string() +
+                         "' \"$@\"\n");
     std::filesystem::permissions(small, std::filesystem::perms::owner_all);
     for (const char* name :
          {"a.nrrd", "a.nhdr", "a.mha", "a.mhd", "a.nii", "a.nii.gz", "a.vti", "a.tif"}) {

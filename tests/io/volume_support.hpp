@@ -5,7 +5,9 @@
 #include <zlib.h>
 
 #include <Eigen/Geometry>
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <random>
 #include <string>
 #include <vector>
@@ -90,6 +92,13 @@ inline std::string all_notes(const VolumeFile& file) {
     std::string text;
     for (const auto& note : file.notes) text += note + "\n";
     return text;
+}
+
+/// The helper that is used unless another is named.
+inline std::filesystem::path real_helper() {
+    if (const char* const helper = std::getenv("PALPATE_IO_HELPER")) return helper;
+    return std::filesystem::read_symlink("/proc/self/exe").parent_path() /
+           "../../libexec/palpate/palpate-io-helper";
 }
 
 inline void put_gzip(const std::filesystem::path& path, const std::string& bytes) {
