@@ -20,6 +20,7 @@ std::string number_with(double value, const std::string& unit) {
 std::string length_text(double mm, LengthUnit unit, const std::string& voxel) {
     switch (unit) {
         case LengthUnit::automatic:
+            if (mm >= 1e4) return number_with(1e-3 * mm, "m");
             return length_text(mm, mm < 0.1 ? LengthUnit::micrometres : LengthUnit::millimetres);
         case LengthUnit::micrometres:
             return number_with(1e3 * mm, "µm");

@@ -21,12 +21,16 @@ constexpr int bins = 256;
 /// Part of the samples, at either end, that may be all black or all white.
 constexpr double outliers = 0.002;
 
+/// Of values, as those of labels and masks, whose background is one of them.
+constexpr auto few = 32;
+
 /// The level below which this part of the samples lies, but for a background that is most of them.
 double quantile(const run::Histogram& histogram, double part) {
     auto counts = histogram.counts;
     const auto most = std::ranges::max_element(counts);
     const auto sum = std::accumulate(counts.begin(), counts.end(), std::int64_t{0});
-    if (2 * *most > sum && *most < sum) *most = 0;
+    const auto values = std::ranges::count_if(counts, [](auto count) { return count > 0; });
+    if (values > few && 2 * *most > sum) *most = 0;
     const double all =
         static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::int64_t{0}));
     double below = 0;

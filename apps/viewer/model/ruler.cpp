@@ -11,12 +11,13 @@
 namespace palpate::viewer {
 
 Ruler ruler_of(const Geometry& geometry) {
-    constexpr double fine_mm = 0.01, seen_part = 0.2;
+    constexpr double fine_mm = 0.01, coarse_mm = 100, seen_part = 0.2;
     constexpr int most_decimals = 6;
     const double voxel = geometry.spacing.minCoeff();
     Ruler ruler;
     ruler.unit = unit_word(geometry);
     if (geometry.measured && voxel < fine_mm) ruler = {"µm", 1e3, 1};
+    if (geometry.measured && voxel >= coarse_mm) ruler = {"m", 1e-3, 1};
     const double digits = std::ceil(-std::log10(seen_part * voxel * ruler.per_mm) - 1e-9);
     ruler.decimals = std::clamp(static_cast<int>(digits), 1, most_decimals);
     return ruler;

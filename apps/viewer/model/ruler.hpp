@@ -8,7 +8,7 @@
 namespace palpate::viewer {
 
 /// With enough decimals for a fifth of the smallest spacing, and in micrometres if that is below
-/// 10 µm.
+/// 10 µm, or in metres from 100 mm on.
 struct Ruler {
     const char* unit = "mm";
     double per_mm = 1;

@@ -132,9 +132,9 @@ Quantity::Quantity(const QString& name, const QString& unit, double low, double 
     } else {
         box_->setSingleStep(step);
     }
-    // All alike, so that they stand in a column; the longest unit is N s/mm.
-    box_->setMinimumWidth(fontMetrics().horizontalAdvance("0.00000 N s/mm") +
-                          2 * fontMetrics().height());
+    // All with units alike, so that they stand in a column; the longest unit is N s/mm.
+    const QString longest = unit.isEmpty() ? "-000000.0" : "0.00000 N s/mm";
+    box_->setMinimumWidth(fontMetrics().horizontalAdvance(longest) + 2 * fontMetrics().height());
     box_->setMaximumWidth(box_->minimumWidth());
     row_in(this, {slider_, box_})->setStretch(0, 1);
     setFocusProxy(box_);

@@ -36,7 +36,7 @@ class PenetrabilityControls : public EffectForm {
                    tr("A surface that is pressed deep enough gives way: the level felt follows the "
                       "hand")},
                   pressing_[&Pressing::on]);
-        auto* form = new QFormLayout;
+        auto* form = form_in();
         auto* threshold = quantity_in(
             *form,
             {"threshold", tr("Depth"),

@@ -171,8 +171,7 @@ QLayout* BrushControls::make_form() {
                                change([&](BrushChoice& c) { c.rate = on ? infinity : rate_; });
                            }});
     at_once->setToolTip(rate->toolTip());
-    auto* form = new QFormLayout;
-    form->setVerticalSpacing(3);
+    auto* form = form_in();
     form->addRow(as_tool);
     add_row(*form, tr("Radius"), radius_, radius_->toolTip());
     add_row(*form, tr("Hardness"), hardness, hardness->toolTip());

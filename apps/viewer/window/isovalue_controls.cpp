@@ -29,6 +29,13 @@ IsovalueControls::IsovalueControls(const Desk& desk)
                   tr("The level felt now [data units]; another than the isovalue while "
                      "penetrability lets the hand through"))),
       terraces_(new Note("terraces", Note::Kind::plain)) {
+    dequantize_ = named(new QCheckBox(tr("dequantize")), "dequantize",
+                        tr("Give back what rounding to levels took, against terraces and the stair "
+                           "steps of masks.\nThe volume is read again; edits are lost."));
+    connect(dequantize_, &QCheckBox::clicked, this, [this](bool on) {
+        dequantize_->setChecked(!on);  // until the volume has been read again
+        Q_EMIT dequantize_wanted(on);
+    });
     felt_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
     auto* slider = level_->findChild<QSlider*>();  // below the chart, as wide
     slider->setToolTip(level_->toolTip());
@@ -49,8 +56,8 @@ IsovalueControls::IsovalueControls(const Desk& desk)
                 felt ? QString::fromStdString(isovalue_warning(effect_.field(), effect_.isovalue()))
                      : QString());
         });
-    column_in(this, {chart_, slider, row_of({level_, felt_}, 1), make_field(), terraces_, warning,
-                     make_overruled()})
+    column_in(this, {chart_, slider, row_of({level_, dequantize_}, 1), make_field(), terraces_,
+                     warning, row_of({make_overruled(), felt_}, 0)})
         ->setSpacing(3);
     connect(chart_, &LevelChart::level_moved, level_, &Quantity::ask);
     connect(&effect_, &Effect::observed, this, [this](const Snapshot& now) {
@@ -101,14 +108,7 @@ QWidget* IsovalueControls::make_field() {
         {tr("linear"), tr("cubic")},
         {[field] { return static_cast<int>(field().second); },
          [this, field](int as) { use_field(field().first, static_cast<Interpolation>(as)); }});
-    dequantize_ = named(new QCheckBox(tr("dequantize")), "dequantize",
-                        tr("Give back what rounding to levels took, against terraces and the stair "
-                           "steps of masks.\nThe volume is read again; edits are lost."));
-    connect(dequantize_, &QCheckBox::clicked, this, [this](bool on) {
-        dequantize_->setChecked(!on);  // until the volume has been read again
-        Q_EMIT dequantize_wanted(on);
-    });
-    return row_of({solid, smoothness, dequantize_}, 2);
+    return row_of({solid, smoothness}, 0);
 }
 
 void IsovalueControls::use_field(Solid solid, Interpolation interpolation) {
@@ -117,13 +117,22 @@ void IsovalueControls::use_field(Solid solid, Interpolation interpolation) {
     messages_.guarded([&] { content_.use_field(solid, interpolation); });
 }
 
+/// As filters::reason_to_dequantize(), in the person's language.
+QString IsovalueControls::reason_to_dequantize(const Opened& opened) {
+    if (!opened.terraces || !opened.terraces->wide()) return {};
+    const filters::Terraces& terraces = *opened.terraces;
+    if (terraces.mask) return tr("the samples have two values, so surfaces are stair steps");
+    return tr("rounding to levels of %1 makes terraces of %2 % of the surfaces and tilts them by "
+              "%3 degrees")
+        .arg(number_text(terraces.level, 4))
+        .arg(std::lround(100 * terraces.share))
+        .arg(std::lround(terraces.tilt));
+}
+
 void IsovalueControls::show_terraces() {
     const Opened& opened = *content_.volume();
     const bool on = opened.loaded.source.dequantize > 0;
-    set_dequantized(on, on || opened.terraces,
-                    opened.terraces
-                        ? QString::fromStdString(filters::reason_to_dequantize(*opened.terraces))
-                        : QString());
+    set_dequantized(on, on || opened.terraces, reason_to_dequantize(opened));
 }
 
 void IsovalueControls::begin() {

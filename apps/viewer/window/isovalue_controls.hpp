@@ -10,6 +10,8 @@
 
 namespace palpate::viewer {
 
+struct Opened;
+
 class IsovalueControls : public EffectForm, protected Desk {
     Q_OBJECT
 
@@ -32,6 +34,7 @@ class IsovalueControls : public EffectForm, protected Desk {
     bool layered() const;
     void use_field(Solid solid, Interpolation interpolation);
     void show_terraces();
+    static QString reason_to_dequantize(const Opened& opened);
     void show_felt(double isovalue, bool penetrability_on);
 
     LevelChart* chart_;

@@ -1,7 +1,6 @@
 // Connects the controls of the look with the look that is chosen, and shows it in the views.
 #include "apps/viewer/window/look_controls.hpp"
 
-#include <QGridLayout>
 #include <QLabel>
 
 #include <algorithm>
@@ -233,13 +232,10 @@ QWidget* LookControls::make_rest() {
         {&Look::orientation, "orientation", tr("Orientation cube"),
          tr("L, R, A, P, S, I: sides of the body")},
         {&Look::scale_bar, "scale_bar", tr("Scale bar"), tr("A length in the picture [mm]")}};
-    auto* all = new QWidget;
-    auto* grid = new QGridLayout(all);
-    grid->setContentsMargins(0, 0, 0, 0);
-    grid->setVerticalSpacing(2);
+    auto* all = column_of({});
+    all->layout()->setSpacing(2);
     for (const auto& [shown, name, text, tip] : switches) {
-        const int at = grid->count();
-        grid->addWidget(check({QString("show_") + name, text, tip}, its_[shown]), at / 2, at % 2);
+        all->layout()->addWidget(check({QString("show_") + name, text, tip}, its_[shown]));
     }
     auto* colours = choice({"colours", "", tr("Colour map of the slices")}, colour_map_names(),
                            its_[&Look::colours]);

@@ -93,7 +93,7 @@ ToolControls::ToolControls(const Desk& desk)
                                 tr("Tools (*.stl *.ply *.obj *.vtp *.csv);;All files (*)"));
                             if (!path.isEmpty()) this->open(path);
                         });
-    auto* form = new QFormLayout;
+    auto* form = form_in();
     auto* scale = quantity_in(
         *form,
         {"tool_scale", tr("Size"), tr("How many times as large as usual the tool is"),

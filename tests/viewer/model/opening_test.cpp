@@ -34,11 +34,20 @@ TEST(Opening, first_level_lies_within_the_data) {
 
 TEST(Opening, a_background_does_not_decide_the_contrast) {
     std::vector<std::uint8_t> samples(4096, 0);
-    for (std::size_t i = 0; i < 4; ++i) samples[i * 900] = static_cast<std::uint8_t>(100 + 20 * i);
+    for (std::size_t i = 0; i < 61; ++i) samples[i * 60] = static_cast<std::uint8_t>(100 + i);
     Volume cells(Geometry{.size = {16, 16, 16}}, samples);
     const Opened opened{{cells, source_named("cells"), "cells"}, run::histogram_of(cells, 256)};
     EXPECT_NEAR(opened.dark(), 100, 2);
     EXPECT_NEAR(opened.bright(), 160, 2);
+}
+
+TEST(Opening, each_label_of_a_map_is_seen_on_its_background) {
+    std::vector<std::uint8_t> samples(4096, 0);
+    for (std::size_t i = 0; i < 900; ++i) samples[i] = i < 500 ? 3 : 9;
+    Volume labels(Geometry{.size = {16, 16, 16}}, samples);
+    const Opened opened{{labels, source_named("map"), "map"}, run::histogram_of(labels, 256)};
+    EXPECT_LT(opened.dark(), 1);
+    EXPECT_NEAR(opened.bright(), 9, 0.1);
 }
 
 TEST(Opening, constant_data_are_refused_with_their_name) {

@@ -131,6 +131,10 @@ TEST(Measurement, is_put_into_words) {
     EXPECT_EQ(length_text(25.4, LengthUnit::inches), "1 in");
     EXPECT_EQ(length_text(25.4, LengthUnit::centimetres), "2.54 cm");
     EXPECT_EQ(length_text(0.5, LengthUnit::micrometres), "500.0 µm");
+    EXPECT_EQ(length_text(40000, LengthUnit::automatic), "40 m");
+    Geometry field;
+    field.spacing.setConstant(5000);
+    EXPECT_EQ(ruler_of(field).number(147500) + " " + ruler_of(field).unit, "147.5 m");
     EXPECT_EQ(length_text(12.34, LengthUnit::voxels, "Voxel"), "12.3 Voxel");
     EXPECT_EQ(text_of({Measure::length, {{0, 0, 0}, {0, 20, 0}}}, LengthUnit::centimetres), "2 cm");
     EXPECT_EQ(text_of({Measure::angle, {{1, 0, 0}, {0, 0, 0}, {0, 2, 0}}}), "90.0°");

@@ -5,6 +5,7 @@
 #include <QTextBrowser>
 
 #include "apps/viewer/model/ruler.hpp"
+#include "apps/viewer/panel/layout.hpp"
 #include "viewer/window/window_fixture.hpp"
 
 namespace palpate::viewer::test {
@@ -80,13 +81,16 @@ using DrawnWords = WordsInWindow;
 /// With the fonts of a display: without one they are larger.
 TEST_F(DrawnWords, leave_three_quarters_of_a_common_window_to_the_picture) {
     feel("synthetic:sphere:24x24x24");
-    window_->resize(1400, 900);
-    wait_until_quiet(*window_);
+    for (auto* section : window_->findChildren<Section*>()) section->set_open(true);
     auto& tabs = part<QTabWidget>("tabs");
-    for (int page = 0; page < tabs.count(); ++page) {
-        tabs.setCurrentIndex(page);
+    for (const QSize size : {QSize(1400, 900), QSize(1024, 700)}) {
+        window_->resize(size);
         wait_until_quiet(*window_);
-        EXPECT_LE(4 * part<QWidget>("dock").width(), window_->width()) << page;
+        for (int page = 0; page < tabs.count(); ++page) {
+            tabs.setCurrentIndex(page);
+            wait_until_quiet(*window_);
+            EXPECT_LE(4 * part<QWidget>("dock").width(), window_->width()) << page;
+        }
     }
 }
 
