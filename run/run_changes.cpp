@@ -42,17 +42,17 @@ class Gone final : public Device {
 
 }  // namespace
 
-/// If the device is the one that this run has, `let_go` closes it first.
+/// If the device is the one that this run has, `close` closes it first.
 std::unique_ptr<Device> Run::open_for(const Setup& setup, double isovalue,
                                       const OnProgress& progress,
-                                      const std::function<void()>& let_go) const {
+                                      const std::function<void()>& close) const {
     const double rate = setup.render.rate.value_or(usual_rate);
     if (!(rate >= 250 && rate <= 8000)) {
         std::string text;
         io::append_number(text, rate);
         throw std::invalid_argument("rate " + text + " Hz: a live session runs at 250 to 8000 Hz");
     }
-    const devices::OpenedBy opened_by(this, let_go);
+    const devices::OpenedBy opened_by(this, close);
     return setup.open_device(
         setup.device,
         {seen(field_), isovalue, rate,

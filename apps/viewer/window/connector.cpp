@@ -137,9 +137,9 @@ void Connector::use_device(const devices::DeviceChoice& device) {
     task_.start(
         connecting_words(device),
         [this, change](const io::Progress& progress) {
-            const auto open = [&](const run::Setup& setup, const std::function<void()>& let_go) {
+            const auto open = [&](const run::Setup& setup, const std::function<void()>& close) {
                 return opened(progress, [&](const OnProgress& waits) {
-                    return LiveHand::with(change->data, setup, change->key, let_go, waits);
+                    return LiveHand::with(change->data, setup, change->key, close, waits);
                 });
             };
             try {

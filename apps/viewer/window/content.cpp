@@ -65,11 +65,11 @@ void Content::begin_effect() {
 }
 
 LiveHand LiveHand::with(std::shared_ptr<run::Data> data, run::Setup setup,
-                        std::shared_ptr<const int> key, std::function<void()> let_go,
+                        std::shared_ptr<const int> key, std::function<void()> close,
                         const OnProgress& progress) {
-    setup.open_device = [open = setup.open_device, key, let_go = std::move(let_go)](
+    setup.open_device = [open = setup.open_device, key, close = std::move(close)](
                             const auto& choice, const auto& scene) {
-        const devices::OpenedBy opened_by(key.get(), let_go);
+        const devices::OpenedBy opened_by(key.get(), close);
         return open(choice, scene);
     };
     auto run = std::make_unique<run::Run>(std::move(data), setup, progress);

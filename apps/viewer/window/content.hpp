@@ -41,10 +41,10 @@ struct RunRequest {
 
 /// A hand of a live run.
 struct LiveHand {
-    /// Opens its device, on any thread; `let_go` closes the one that the hand has, if that is the
+    /// Opens its device, on any thread; `close` closes the one that the hand has, if that is the
     /// same. Throws as run::Run.
     static LiveHand with(std::shared_ptr<run::Data> data, run::Setup setup,
-                         std::shared_ptr<const int> key, std::function<void()> let_go,
+                         std::shared_ptr<const int> key, std::function<void()> close,
                          const OnProgress& progress = {});
 
     std::shared_ptr<const int> key;  ///< by which devices know the hand that they serve

@@ -155,7 +155,7 @@ class Run {
     Servo& started_servo() const;
     std::unique_ptr<Device> open_for(const Setup& setup, double isovalue,
                                      const OnProgress& progress = {},
-                                     const std::function<void()>& let_go = {}) const;
+                                     const std::function<void()>& close = {}) const;
     void hold(std::unique_ptr<Device> device);
     void close_device();
     void reopen(double isovalue, const DeviceInfo& old);
