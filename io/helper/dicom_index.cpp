@@ -2,6 +2,7 @@
 #include "io/helper/dicom_index.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <iterator>
 #include <set>
 
@@ -20,21 +21,31 @@ class IndexRecords : private DicomElements {
 
     /// The names of all images, as they are listed. Throws Failure.
     std::vector<std::string> images() {
-        std::uint64_t at = 132;  // behind the preamble
-        while (bytes_.reaches(at + 8)) {
+        constexpr std::uint64_t preamble = 128;
+        if (!bytes_.reaches(preamble + 4) || value(preamble, 4) != "DICM") fail("is no DICOM file");
+        for (std::uint64_t at = preamble + 4; bytes_.reaches(at + 1);) {
             const DicomElement e = element(at, true);
-            if (e.tag == 0x00041220) return images_from(at);
-            if (e.length == unknown) break;
-            at += e.length;
+            if (e.tag == 0x00041220) return images_from(at, e.length);
+            at = end_of(at, e.length);
         }
-        return {};
+        fail("has no list of files");
     }
 
   private:
     static constexpr std::uint32_t unknown = 0xffffffff;
 
-    /// Of the items that begin at `at`. Marks of their ends have no value.
-    std::vector<std::string> images_from(std::uint64_t at) {
+    /// Where a value that begins at `at` ends.
+    std::uint64_t end_of(std::uint64_t at, std::uint32_t length) {
+        if (length == unknown) fail("has records of an unusual kind");
+        if (!bytes_.reaches(at + length)) fail("is cut off");
+        return at + length;
+    }
+
+    /// Of the items that begin at `at` and take `length` bytes or have a mark behind them. The
+    /// items of a sequence in one of them, such as a small picture, are passed over.
+    std::vector<std::string> images_from(std::uint64_t at, std::uint32_t length) {
+        const bool has_mark = length == unknown;
+        const std::uint64_t end = has_mark ? UINT64_MAX : end_of(at, length);
         std::vector<std::string> names;
         std::string kind, name;
         const auto end_record = [&] {
@@ -42,22 +53,26 @@ class IndexRecords : private DicomElements {
             kind.clear();
             name.clear();
         };
-        while (bytes_.reaches(at + 8)) {
+        for (int depth = 0; at < end;) {
             const DicomElement e = element(at, true);
-            if (e.tag == 0xfffee000) end_record();  // its elements follow
-            if (e.tag == 0xfffee0dd) break;
-            if (e.tag >> 16 == 0xfffe) continue;
-            if (e.length == unknown) fail("has records of an unusual kind");
+            if (e.tag == 0xfffee000 && depth == 0) end_record();  // its elements follow
+            if (e.tag == 0xfffee0dd && --depth < 0) break;
+            if (e.tag >> 16 == 0xfffe) continue;  // these have no value
+            if (e.vr == "SQ" && e.length == unknown) {
+                ++depth;
+                continue;
+            }
             if (e.tag == 0x00041430) kind = value(at, e.length);
             if (e.tag == 0x00041500) name = value(at, e.length);
-            at += e.length;
+            at = end_of(at, e.length);
         }
+        if (!has_mark && at != end) fail("is damaged (a record is longer than the list)");
         end_record();
         return names;
     }
 
     std::string value(std::uint64_t at, std::uint32_t length) {
-        if (!bytes_.reaches(at + length)) fail("is cut off");
+        (void)end_of(at, length);
         const auto bytes = bytes_.view(at, length);
         const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
         return trimmed(text.substr(0, text.find('\0')));
@@ -81,12 +96,7 @@ std::vector<std::string> images_missing(const fs::path& index, const std::vector
     for (const fs::path& file : files) {
         there.insert(plain_name(file.lexically_relative(index.parent_path()).generic_string()));
     }
-    std::vector<std::string> images;
-    try {
-        images = IndexRecords(index).images();
-    } catch (const Failure&) {
-        return {};
-    }
+    const std::vector<std::string> images = IndexRecords(index).images();
     std::vector<std::string> missing;
     std::ranges::copy_if(images, std::back_inserter(missing), [&](const std::string& name) {
         return !there.contains(plain_name(name));

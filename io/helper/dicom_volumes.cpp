@@ -334,7 +334,6 @@ void check_others(const std::vector<fs::path>& slices, const std::vector<fs::pat
     std::set<std::string> names;
     std::set<fs::path> bare;  // folders of slices without an extension
     for (const fs::path& slice : slices) {
-        if (slice.filename() == "DICOMDIR") continue;  // lists them
         names.insert(numberless(slice));
         if (!slice.has_extension()) bare.insert(slice.parent_path());
     }
@@ -362,23 +361,32 @@ void check_others(const std::vector<fs::path>& slices, const std::vector<fs::pat
 }
 
 /// Files that the folder's index lists may have been slices of the series.
-void note_missing_images(const std::vector<fs::path>& files, std::vector<std::string>& notes) {
-    for (const fs::path& file : files) {
-        if (!is_dicom_index(file)) continue;
-        const auto missing = images_missing(file, files);
-        if (missing.empty()) continue;
-        notes.push_back(
-            "its index (" + file.filename().string() + ") lists " + std::to_string(missing.size()) +
-            " images that are not in the folder, the first is " + quoted(fs::path(missing[0])) +
-            ": if they belong to this series, it is not complete");
+void note_missing_images(const std::vector<fs::path>& indexes, const std::vector<fs::path>& files,
+                         std::vector<std::string>& notes) {
+    for (const fs::path& file : indexes) {
+        try {
+            const auto missing = images_missing(file, files);
+            if (missing.empty()) continue;
+            notes.push_back("its index (" + file.filename().string() + ") lists " +
+                            std::to_string(missing.size()) +
+                            " images that are not in the folder, the first is " +
+                            quoted(fs::path(missing[0])) +
+                            ": if they belong to this series, it is not complete");
+        } catch (const Failure& e) {
+            notes.push_back("its index could not be read (" + std::string(e.what()) +
+                            "): it is not known whether images are missing");
+        }
     }
 }
 
 Result read_folder(const Request& request) {
-    std::vector<fs::path> files, others;
+    std::vector<fs::path> files, others, indexes;
     const auto take = [&](const fs::directory_entry& entry) {
         if (!is_shown_file(entry) && !is_dangling_link(entry)) return;
-        (begins_as_dicom(entry.path()) ? files : others).push_back(entry.path());
+        (is_dicom_index(entry.path())    ? indexes
+         : begins_as_dicom(entry.path()) ? files
+                                         : others)
+            .push_back(entry.path());
     };
     if (has_dicom_index(request.path)) {
         std::ranges::for_each(fs::recursive_directory_iterator(request.path), take);
@@ -398,7 +406,7 @@ Result read_folder(const Request& request) {
         throw Failure("has DICOM files, but none with an image; give another folder");
     const auto all = series_of(std::move(slices));
     Result result = read_chosen(all, request);
-    note_missing_images(files, result.notes);
+    note_missing_images(indexes, files, result.notes);
     return result;
 }
 

@@ -1,6 +1,7 @@
 // What the numbers in DICOM files mean, and files that are written in unusual ways: display that is
 // inverted, tables of values, lengths of odd types, padding, no preamble, discs with an index.
 #include <algorithm>
+#include <random>
 
 #include "volume_dicom_changed.hpp"
 
@@ -224,6 +225,72 @@ TEST(dicom_folder, a_disc_with_an_index_has_its_slices_in_folders_of_folders) {
     put_bytes(folder / "DICOMDIR", dicom_start(index, "1.2.840.10008.1.2.1"));
     put_bytes(folder / "README.TXT", "a disc");
     expect_usual(read_volume(folder.path()));
+}
+
+/// A disc of four slices, without its index.
+void put_disc(const std::filesystem::path& folder) {
+    std::filesystem::create_directories(folder / "DICOM/PAT1");
+    for (int i = 0; i < 4; ++i) {
+        put_slice(folder / ("DICOM/PAT1/IM" + std::to_string(i)), usual_slice(i));
+    }
+}
+
+/// The index of this disc. Some programs give its list no length.
+std::string index_of_disc(bool has_length) {
+    TestSlice index;
+    index.kind = "1.2.840.10008.1.3.10";
+    std::string records;
+    for (int i = 0; i < 4; ++i) {
+        const std::string icon = tag_bytes(0x0088, 0x0200) +
+                                 std::string("SQ\0\0\xff\xff\xff\xff", 8) +
+                                 item_of(element(0x0028, 0x0004, "CS", "MONOCHROME2")) +
+                                 tag_bytes(0xfffe, 0xe0dd) + little(0U);
+        records += item_of(element(0x0004, 0x1430, "CS", "IMAGE") +
+                           element(0x0004, 0x1500, "CS", "DICOM\\PAT1\\IM" + std::to_string(i)) +
+                           (has_length ? "" : icon));
+    }
+    const std::string start =
+        dicom_start(index, "1.2.840.10008.1.2.1") + element(0x0004, 0x1130, "CS", "DISC");
+    if (has_length) return start + long_element(0x0004, 0x1220, "SQ", records);
+    return start + tag_bytes(0x0004, 0x1220) + std::string("SQ\0\0\xff\xff\xff\xff", 8) + records +
+           tag_bytes(0xfffe, 0xe0dd) + little(0U);
+}
+
+TEST(dicom_folder, a_damaged_index_does_not_keep_the_slices_from_being_read) {
+    const ScratchFolder folder;
+    put_disc(folder.path());
+    const auto notes_with = [&](const std::string& index) {
+        put_bytes(folder / "DICOMDIR", index);
+        const VolumeFile file = read_volume(folder.path());
+        expect_usual(file);
+        return all_notes(file);
+    };
+    for (const bool has_length : {false, true}) {
+        const std::string whole = index_of_disc(has_length);
+        EXPECT_FALSE(contains(notes_with(whole), "index"));
+        for (std::size_t length = 0; length < whole.size(); length += 41) {
+            EXPECT_TRUE(
+                contains(notes_with(whole.substr(0, length)), "its index could not be read"))
+                << length;
+        }
+        EXPECT_TRUE(contains(notes_with(whole.substr(0, whole.size() - 20)), "is cut off"));
+        std::string wrong = whole;
+        wrong[whole.find("IMAGE") - 1] = '\x7f';  // the upper half of a length
+        EXPECT_TRUE(contains(notes_with(wrong), "its index could not be read"));
+    }
+    EXPECT_TRUE(contains(notes_with("a list of files"), "'DICOMDIR' is no DICOM file"));
+}
+
+TEST(dicom_folder, any_byte_of_an_index_may_be_wrong) {
+    const ScratchFolder folder;
+    put_disc(folder.path());
+    std::mt19937 random(7);
+    for (int i = 0; i < 30; ++i) {
+        std::string index = index_of_disc(i % 2 == 0);
+        index[random() % index.size()] = static_cast<char>(random());
+        put_bytes(folder / "DICOMDIR", index);
+        expect_usual(read_volume(folder.path()));
+    }
 }
 
 }  // namespace
