@@ -1,11 +1,11 @@
 // Levels: numbers in the data's units, or percent of its range.
 #include "palpate/io/level.hpp"
 
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
 #include <string>
-#include <system_error>
+
+#include "io/system/number.hpp"
 
 namespace palpate::io {
 namespace {
@@ -21,12 +21,10 @@ namespace {
 Level level_from_text(std::string_view text) {
     const bool percent = !text.empty() && text.back() == '%';
     const std::string_view digits = text.substr(0, text.size() - (percent ? 1 : 0));
-    const char* const last = digits.data() + digits.size();
-    double number = 0;
-    const auto [end, error] = std::from_chars(digits.data(), last, number);
-    if (error != std::errc{} || end != last || !std::isfinite(number)) refuse_level(text);
-    if (percent) return PercentOfRange{number};
-    return number;
+    const auto number = number_from<double>(digits);
+    if (!number || !std::isfinite(*number)) refuse_level(text);
+    if (percent) return PercentOfRange{*number};
+    return *number;
 }
 
 double level_in(const Volume& volume, const Level& level) {

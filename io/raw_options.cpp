@@ -1,7 +1,6 @@
 // Parses the options that describe a raw file.
 #include "palpate/io/raw_options.hpp"
 
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
 
@@ -17,7 +16,7 @@ Vec3 three_numbers_from(std::string_view text, char separator, std::string_view 
     bool good = true;
     for (int i = 0; i < 3 && good; ++i) {
         if (i > 0) good = at != end && *at++ == separator;
-        const auto [next, error] = std::from_chars(at, end, numbers[i]);
+        const auto [next, error] = read_number(at, end, numbers[i]);
         good = good && error == std::errc{} && std::isfinite(numbers[i]);
         at = next;
     }

@@ -2,7 +2,6 @@
 #include "io/helper/dicom_check.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <set>
 #include <utility>
@@ -183,16 +182,13 @@ class Walk : private DicomElements {
             size = number<std::uint16_t>(at);
             return;
         }
-        std::string digits = text(at, e);
-        if (digits.starts_with('+')) digits.erase(0, 1);
-        const auto [end, error] =
-            std::from_chars(digits.data(), digits.data() + digits.size(), extent_.frames);
-        const bool is_number = error == std::errc{} && end == digits.data() + digits.size();
-        if (is_number && extent_.frames == 0) {
+        const std::string digits = text(at, e);
+        extent_.frames = number_from<std::int64_t>(digits).value_or(-1);
+        if (extent_.frames == 0) {
             extent_.frames = 1;
             extent_.notes.emplace_back("its NumberOfFrames is 0: 1 was taken");
         }
-        if (!is_number || extent_.frames < 1 || extent_.frames > 1 << 20) {
+        if (extent_.frames < 1 || extent_.frames > 1 << 20) {
             fail("has '" + digits.substr(0, 20) + "' frames, which is not possible");
         }
     }

@@ -2,7 +2,6 @@
 #include "io/helper/headers.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -176,9 +175,8 @@ std::vector<double> numbers_in(const std::string& text, const std::string& field
     while (true) {
         while (at < end && std::strchr(" \t\r\n", *at) != nullptr) ++at;
         if (at == end) return numbers;
-        if (*at == '+') ++at;
         double number = 0;
-        const auto [next, error] = std::from_chars(at, end, number);
+        const auto [next, error] = read_number(at, end, number);
         if (error != std::errc{} || (next < end && std::strchr(" \t\r\n", *next) == nullptr)) {
             throw Failure("its header field '" + field + "' is not a list of numbers ('" +
                           text.substr(0, 60) + "'); correct the header");

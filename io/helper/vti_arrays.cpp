@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -42,8 +41,8 @@ void check_numbers(const std::string& text, Stored stored, double most) {
     const char *at = text.data(), *const end = at + text.size();
     double number = 0;
     for (double count = 1;; ++count) {
-        at = std::find_if(at, end, [](char c) { return std::strchr(" \t\r\n+", c) == nullptr; });
-        const auto [next, error] = std::from_chars(at, end, number);
+        at = std::find_if(at, end, [](char c) { return std::strchr(" \t\r\n", c) == nullptr; });
+        const auto [next, error] = read_number(at, end, number);
         if (error != std::errc{}) return;
         if (count > most) {
             throw Failure(

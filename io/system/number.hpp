@@ -22,13 +22,18 @@ inline void append_number(std::string& text, std::int64_t value) {
     text.append(digits, end);
 }
 
-/// The whole text as a number (a leading + is allowed), or nothing. "nan" and "inf" are numbers
-/// here.
+/// As std::from_chars, but the number may begin with one plus sign.
+template <class T>
+std::from_chars_result read_number(const char* at, const char* end, T& value) {
+    if (end - at > 1 && at[0] == '+' && at[1] != '-') ++at;
+    return std::from_chars(at, end, value);
+}
+
+/// The whole text as a number, or nothing. "nan" and "inf" are numbers here.
 template <class T>
 std::optional<T> number_from(std::string_view text) {
-    if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
     T value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const auto [end, error] = read_number(text.data(), text.data() + text.size(), value);
     if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
     return value;
 }

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "palpate/io/raw_options.hpp"
 #include "volume_support.hpp"
 
 namespace palpate::io::test {
@@ -197,6 +198,30 @@ TEST(meta_image, a_map_of_values_that_is_ignored_is_said) {
     EXPECT_TRUE(said("ElementToIntensityFunctionSlope = 2"));
     EXPECT_TRUE(said("ElementToIntensityFunctionOffset = -1024"));
     EXPECT_FALSE(said("ElementToIntensityFunctionSlope = 1"));
+}
+
+TEST(volume_numbers, may_begin_with_one_plus_sign) {
+    const ScratchFolder folder;
+    const auto read_with = [&](const std::string& spacing, const std::string& name) {
+        const bool is_nrrd = name.ends_with(".nrrd");
+        put_bytes(folder / name,
+                  is_nrrd ? "NRRD0004\ntype: uint8\ndimension: 3\nsizes: +2 2 2\nspacings: 1 1 " +
+                                spacing + "\nencoding: raw\n\n12345678"
+                          : "NDims = 3\nDimSize = 2 2 +2\nElementSpacing = 1 1 " + spacing +
+                                "\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n12345678");
+        return folder / name;
+    };
+    for (const std::string name : {"a.nrrd", "a.mha"}) {
+        EXPECT_EQ(read_volume(read_with("+2.5", name)).volume.geometry().spacing[2], 2.5);
+        for (const char* const wrong : {"+-2.5", "++2.5", "+", "+ 2.5"}) {
+            EXPECT_TRUE(contains(refusal(read_with(wrong, name)), "is not a list of numbers"))
+                << wrong;
+        }
+    }
+    EXPECT_EQ(spacing_from("+1,2,+0.5"), Vec3(1, 2, 0.5));
+    for (const char* const wrong : {"+-1,2,3", "++1,2,3", "1,+,3"}) {
+        EXPECT_THROW((void)spacing_from(wrong), std::invalid_argument) << wrong;
+    }
 }
 
 }  // namespace
