@@ -33,7 +33,8 @@ std::size_t begin_of_solid(const std::string& text) {
     throw Failure("is damaged or not what its name says (" + what + "); export it again");
 }
 
-/// Three corners for each triangle of a text, from its "solid" on.
+/// Three corners for each triangle of a text, from its "solid" on. Some programs leave out
+/// "endsolid", so only a facet that is cut off shows that the file is.
 std::vector<Corner> corners_in_text(const std::string& text, std::size_t begin) {
     std::istringstream in(text.substr(begin));
     std::vector<Corner> corners;
@@ -59,7 +60,9 @@ std::vector<Corner> corners_in_text(const std::string& text, std::size_t begin) 
                 }
             } else if (word == "endloop") {
                 if (corners.size() % 3 != 0) fail_stl("a facet has not three corners");
-            } else if (word != "facet" && word != "outer" && word != "loop" && word != "endfacet") {
+            } else if (word == "facet" || word == "endfacet") {
+                is_open = word == "facet";
+            } else if (word != "outer" && word != "loop") {
                 fail_stl("'" + word.substr(0, 40) + "' is no word of STL");
             }
         }

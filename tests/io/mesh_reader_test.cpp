@@ -298,5 +298,21 @@ TEST(MeshReader, texts_may_have_any_line_ends_a_byte_order_mark_and_comments_fir
     }
 }
 
+TEST(MeshReader, an_stl_text_without_its_last_line_is_read_if_its_facets_are_whole) {
+    const support::ScratchFolder folder;
+    const std::string facet =
+        "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 +1 0\nendloop\n"
+        "endfacet\n";
+    for (const std::string end : {"", "\n", "endsolid"}) {
+        put_bytes(folder / "a.stl", "solid a\n" + facet + facet + end);
+        EXPECT_EQ(read_mesh(folder / "a.stl").triangles.size(), 2U) << end;
+    }
+    for (std::size_t length = 1; length + 1 < facet.size(); ++length) {
+        put_bytes(folder / "a.stl", "solid a\n" + facet + facet.substr(0, length));
+        EXPECT_TRUE(contains(refusal_of_mesh(folder / "a.stl"), "not what its name says"))
+            << length;
+    }
+}
+
 }  // namespace
 }  // namespace palpate::io::test
