@@ -5,6 +5,7 @@
 
 #include "io/helper/headers.hpp"
 #include "io/helper/readers.hpp"
+#include "io/web_page.hpp"
 
 namespace palpate::io {
 namespace {
@@ -61,15 +62,13 @@ void check_kind(const std::filesystem::path& file) {
          "7zXZ",
          "is packed with xz; unpack it and give what is in it"},
         {"\x28\xb5\x2f\xfd", "is packed with zstd; unpack it and give what is in it"},
-        {"PK\3\4", "is packed with zip; unpack it and give what is in it"},
-        {"<!doctype", "is a web page in place of the file; download it again"},
-        {"<html", "is a web page in place of the file; download it again"}};
-    const auto start = start_of(file, 16);
-    const std::string text =
-        lower(std::string(reinterpret_cast<const char*>(start.data()), start.size()));
+        {"PK\3\4", "is packed with zip; unpack it and give what is in it"}};
+    const auto start = start_of(file, web_page_start);
+    const std::string text(reinterpret_cast<const char*>(start.data()), start.size());
     for (const auto& [begin, what] : kinds) {
-        if (text.starts_with(lower(std::string(begin)))) throw Failure(std::string(what));
+        if (text.starts_with(begin)) throw Failure(std::string(what));
     }
+    if (is_web_page(text)) throw Failure(is_web_page_message);
 }
 
 VolumeHeader header_of(const Request& request) {

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "io/system/system.hpp"
+#include "io/web_page.hpp"
 #include "palpate/io/address.hpp"
 #include "palpate/io/error.hpp"
 
@@ -15,10 +16,22 @@ namespace fs = std::filesystem;
 
 namespace {
 
-bool begins_with(const fs::path& path, const std::string& text) {
-    std::string start(text.size(), '\0');
-    std::ifstream(path, std::ios::binary).read(start.data(), std::ssize(start));
-    return start == text;
+/// Throws InputError if the file has only the address of its data, or is a server's answer.
+void check_content(const fs::path& path) {
+    std::string start(web_page_start, '\0');
+    std::ifstream in(path, std::ios::binary);
+    in.read(start.data(), std::ssize(start));
+    start.resize(static_cast<std::size_t>(in.gcount()));
+    const std::string name = path.string();
+    if (start.starts_with("version https://git-lfs.github.com/spec/")) {
+        throw InputError(name + ": has only the address of its data (Git LFS); run git lfs pull");
+    }
+    if (start.starts_with("/annex/objects/")) {
+        throw InputError(name +
+                         ": has only the address of its data (git-annex, DataLad); run git annex "
+                         "get or datalad get");
+    }
+    if (is_web_page(start)) throw InputError(name + ": " + is_web_page_message);
 }
 
 }  // namespace
@@ -70,14 +83,7 @@ void check_readable(const fs::path& path) {
     if (!folder && fs::file_size(path, error) == 0) {
         throw InputError(name + ": is empty (0 bytes); copy or download it again");
     }
-    if (!folder && begins_with(path, "version https://git-lfs.github.com/spec/")) {
-        throw InputError(name + ": has only the address of its data (Git LFS); run git lfs pull");
-    }
-    if (!folder && begins_with(path, "/annex/objects/")) {
-        throw InputError(name +
-                         ": has only the address of its data (git-annex, DataLad); run git annex "
-                         "get or datalad get");
-    }
+    if (!folder) check_content(path);
 }
 
 void fail_without_answer(const fs::path& path) {

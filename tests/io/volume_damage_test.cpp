@@ -3,6 +3,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
+#include "palpate/io/mesh_file.hpp"
 #include "volume_support.hpp"
 
 namespace palpate::io::test {
@@ -157,6 +158,32 @@ TEST(volume_damage, the_address_that_git_lfs_leaves_in_place_of_a_file_is_named_
         put_bytes(folder / name, "version https://git-lfs.github.com/spec/v1\noid sha256:4d\n");
         EXPECT_TRUE(contains(refusal(folder / name), "run git lfs pull")) << name;
     }
+}
+
+TEST(volume_damage, a_web_page_in_place_of_a_file_is_called_so) {
+    const ScratchFolder folder;
+    const std::string rest = "<head><title>Sign in</title></head><body></body></html>\n";
+    const std::string page = "<html lang=\"en\">" + rest;
+    const std::string pages[] = {
+        page, "<!DOCTYPE html>\n" + page, "\xef\xbb\xbf\r\n  <!doctype HTML>" + page,
+        "<?xml version=\"1.0\"?>\n<!-- served by a proxy -->\n<!DOCTYPE html PUBLIC \"\">" + page};
+    for (const char* const name : {"a.vti", "a.tif", "a.nrrd", "a.nii.gz", "a.mha", "a.mrc",
+                                   "a.vtk", "a.mgz", "a.dcm", "a.lsm", "scan"}) {
+        for (const std::string& bytes : pages) {
+            put_bytes(folder / name, bytes);
+            EXPECT_TRUE(contains(refusal(folder / name), "is a web page (perhaps"))
+                << name << bytes;
+        }
+    }
+    for (const char* const name : {"a.stl", "a.ply", "a.obj", "a.vtp"}) {
+        for (const std::string& bytes : pages) {
+            put_bytes(folder / name, bytes);
+            const auto message = message_of<InputError>([&] { (void)read_mesh(folder / name); });
+            EXPECT_TRUE(contains(message, "is a web page (perhaps")) << name << bytes << message;
+        }
+    }
+    put_bytes(folder / "a.vti", "<?xml version=\"1.0\"?>\n<!-- <html> -->\n<VTKFile type=\"odd\">");
+    EXPECT_FALSE(contains(refusal(folder / "a.vti"), "web page"));
 }
 
 }  // namespace
