@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <iterator>
 #include <map>
 
@@ -62,20 +61,25 @@ void name_echo(DicomSeries& series) {
     }
 }
 
-/// How many slices lie at each place.
-std::vector<int> counts_at_places(const DicomSeries& series) {
+struct Place {
+    double along = 0;  ///< [mm] of its first slice
+    int slices = 0;
+};
+
+/// In order; empty where slices have no place.
+std::vector<Place> counted_places(const DicomSeries& series) {
     const std::vector<double> along = places_along(series);
     const double least = same_place_mm(series);
-    std::vector<int> counts;
+    std::vector<Place> places;
     for (std::size_t i = 0; i < along.size(); ++i) {
-        if (i == 0 || along[i] - along[i - 1] > least) counts.push_back(0);
-        ++counts.back();
+        if (i == 0 || along[i] - along[i - 1] > least) places.push_back({along[i]});
+        ++places.back().slices;
     }
-    return counts;
+    return places;
 }
 
 bool has_several_at_one_place(const DicomSeries& series) {
-    return std::ranges::any_of(counts_at_places(series), [](int count) { return count > 1; });
+    return std::ranges::any_of(counted_places(series), [](const Place& p) { return p.slices > 1; });
 }
 
 /// The parts of a series that a property of its slices tells apart, which their kinds then name.
@@ -100,19 +104,40 @@ std::vector<DicomSeries> by_contrast(DicomSeries series) {
     return divided(std::move(series), [](const DicomSlice& s) { return s.contrast; });
 }
 
+/// Whether each part is a volume of its own, which overlaps with another one. Parts of one volume
+/// leave out places that other parts have (every second slice), or lie beside them.
+bool are_volumes(const std::vector<DicomSeries>& parts, const std::vector<Place>& places) {
+    const double least = same_place_mm(parts.front());
+    const auto lies_in = [&](double place, const std::vector<double>& along) {
+        return place >= along.front() - least && place <= along.back() + least;
+    };
+    std::vector<std::vector<double>> all;
+    std::ranges::transform(parts, std::back_inserter(all), places_along);
+    return std::ranges::all_of(all, [&](const auto& along) {
+        const auto is_missing = [&](const Place& p) {
+            const auto is_here = [&](double a) { return std::abs(a - p.along) <= least; };
+            return lies_in(p.along, along) && std::ranges::none_of(along, is_here);
+        };
+        const auto overlaps = [&](const auto& other) {
+            return &other != &along &&
+                   (lies_in(other.front(), along) || lies_in(along.front(), other));
+        };
+        return std::ranges::none_of(places, is_missing) && std::ranges::any_of(all, overlaps);
+    });
+}
+
 /// Acquisitions apart, where they overlap: some places have slices of several of them, but not all
 /// places, as those of time steps have.
 std::vector<DicomSeries> by_acquisition(DicomSeries series) {
-    const std::vector<int> counts = counts_at_places(series);
-    if (counts.empty() || std::ranges::adjacent_find(counts, std::not_equal_to()) == counts.end()) {
-        return {std::move(series)};
-    }
+    const std::vector<Place> places = counted_places(series);
+    const auto differ = [](const Place& a, const Place& b) { return a.slices != b.slices; };
+    if (std::ranges::adjacent_find(places, differ) == places.end()) return {std::move(series)};
     const auto parts = divided(series, [](const DicomSlice& s) {
         const double number = s.frames == 1 ? s.keys.at(acquisition_number) : 0;
         return number > 0 ? "acquisition " + text_of(number) : "";
     });
     const bool are_apart =
-        parts.size() > 1 && std::ranges::none_of(parts, has_several_at_one_place);
+        std::ranges::none_of(parts, has_several_at_one_place) && are_volumes(parts, places);
     return are_apart ? parts : std::vector{std::move(series)};
 }
 

@@ -251,8 +251,13 @@ TEST(dicom, several_slices_at_each_place_are_time_steps) {
         EXPECT_EQ(file.volume.geometry().size[2], 4);
         EXPECT_EQ(file.volume.sample({0, 0, 2}), 100 * (4 * step + 2));
     }
-    std::filesystem::remove(folder / name_of_slice(5));
+    std::filesystem::remove(folder / name_of_slice(4));  // the first one of the second step
     EXPECT_TRUE(contains(refusal(folder.path()), "has 3 DICOM series"));
+    TestSlice first_of_second = slice_at(4, 0);
+    first_of_second.acquisition = 2;
+    put_slice(folder / name_of_slice(4), first_of_second);
+    std::filesystem::remove(folder / name_of_slice(5));
+    EXPECT_TRUE(contains(refusal(folder.path()), "same place"));
 }
 
 TEST(dicom, slices_without_a_position_are_piled_up_by_number_and_that_is_said) {

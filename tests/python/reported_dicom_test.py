@@ -151,11 +151,14 @@ def overlapping(folder, first, second, numbers=(1, 2)):
     """Two acquisitions of the places from these on, 2 mm apart."""
     slices = []
     for start, number in zip((first, second), numbers):
-        for data in stack(ramp("i2") + 1000 * (number - 1), start=start, change=lambda i: {"AcquisitionNumber": number}):
-            data.InstanceNumber = len(slices) + 1
-            data.SOPInstanceUID = f"1.2.3.{len(slices)}"
-            slices.append(data)
-    return save(folder, slices)
+        slices += stack(ramp("i2") + 1000 * (number - 1), start=start, change=lambda i: {"AcquisitionNumber": number})
+    return save(folder, numbered(slices))
+
+
+def numbered(slices):
+    for i, data in enumerate(slices):
+        data.InstanceNumber, data.SOPInstanceUID = i + 1, f"1.2.3.{i}"
+    return slices
 
 
 @pytest.mark.parametrize("second", (5.0, 11.0, 11.01))
@@ -176,6 +179,41 @@ def test_acquisitions_at_all_the_same_places_are_time_steps_and_those_beside_eac
 
 def test_slices_that_overlap_in_one_acquisition_are_refused(tmp_path):
     refused(overlapping(tmp_path / "a", 3.0, 5.0, (1, 1)), "lie at the same place")
+
+
+def acquired(folder, acquisitions):
+    """Slices at these places, one list for each acquisition."""
+    return save(folder, numbered([
+        slice_of(ramp("i2")[0] + 1000 * number, 1, (0, 0, 2 * place), AcquisitionNumber=number)
+        for number, places in enumerate(acquisitions, 1) for place in places]))
+
+
+EVEN, ODD, SLABS = range(0, 20, 2), range(1, 20, 2), [range(i, i + 4) for i in range(0, 20, 4)]
+PARTS = {"every second slice": (EVEN, ODD), "every second slice, one again in it": ([*EVEN, 4], ODD),
+         "every second slice, one again alone": (EVEN, ODD, [4]), "every second slice, one again in the other": (EVEN, [*ODD, 4]),
+         "slabs": SLABS, "slabs, one slice again": [*SLABS, [4]], "slabs, one of them again": [*SLABS, SLABS[1]],
+         "a slice is missing": (range(12), [8, 9, 11, 12])}
+
+
+@pytest.mark.parametrize("parts", PARTS)
+def test_acquisitions_that_are_parts_of_one_volume_are_not_divided(tmp_path, parts):
+    folder = acquired(tmp_path / "a", PARTS[parts])
+    if sum(map(len, PARTS[parts])) == 20:
+        assert len(palpate.load(folder).volume.array) == 20
+    else:
+        refused(folder, "lie at the same place")
+
+
+WHOLE = {"one slice again": (range(10), [4]), "three that overlap": (range(10), range(9, 15), range(12, 20)),
+         "three times, the last one stopped": (range(10), range(10), range(7))}
+
+
+@pytest.mark.parametrize("parts", WHOLE)
+def test_acquisitions_of_their_own_are_divided(tmp_path, parts):
+    folder = acquired(tmp_path / "a", WHOLE[parts])
+    for number, places in enumerate(WHOLE[parts], 1):
+        volume = palpate.load(folder, series=str(number)).volume
+        assert len(volume.array) == len(places) and volume.array[0, 0, 0] == ramp("i2")[0, 0, 0] + 1000 * number
 
 
 # The index of a disc ----------------------------------------------------------------------------------
