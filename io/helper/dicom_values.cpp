@@ -97,7 +97,8 @@ void set_rescale(DicomSlice& s, const DicomGroup& transformation) {
     check_number(s, s.slope, s.slope != 0 && std::isfinite(s.slope), "RescaleSlope", 1);
     check_number(s, s.intercept, std::isfinite(s.intercept), "RescaleIntercept", 0);
     const std::string units = transformation.text({0x0028, 0x1054});
-    if (!units.empty()) s.values.units = units;
+    const bool is_told = !units.empty() && units != unspecified;
+    if (is_told || s.values.units.empty()) s.values.units = units;
 }
 void set_window(DicomSlice& s, const DicomGroup& group) {
     const double centre = group.number({0x0028, 0x1050}, 0);

@@ -85,6 +85,19 @@ def test_unspecified_units_of_pet_are_those_of_its_series(tmp_path):
     assert palpate.load(save(tmp_path / "a", stack(ramp("i2"), change=change))).values["units"] == "BQML"
 
 
+def test_unspecified_units_of_frames_leave_those_of_the_series(tmp_path):
+    data = described_together(ramp("i2"), Modality="PT", Units="BQML")
+    data.SharedFunctionalGroupsSequence[0].PixelValueTransformationSequence[0].RescaleType = "US"
+    assert palpate.load(save(tmp_path / "a", [data])).values["units"] == "BQML"
+
+
+@pytest.mark.parametrize("told, units", (("US", ""), ("HU", "HU")))
+def test_units_of_frames_of_a_ct_are_those_of_their_group(tmp_path, told, units):
+    data = described_together(ramp("i2"))
+    data.SharedFunctionalGroupsSequence[0].PixelValueTransformationSequence[0].RescaleType = told
+    assert palpate.load(save(tmp_path / "a", [data])).values["units"] == units
+
+
 # Mosaics ----------------------------------------------------------------------------------------------
 
 
