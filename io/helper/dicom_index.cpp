@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <iterator>
 #include <set>
+#include <utility>
 
 #include "io/helper/dicom_elements.hpp"
 #include "io/helper/headers.hpp"
@@ -47,11 +48,15 @@ class IndexRecords : private DicomElements {
         const bool has_mark = length == unknown;
         const std::uint64_t end = has_mark ? UINT64_MAX : end_of(at, length);
         std::vector<std::string> names;
-        std::string kind, name;
+        struct Record {
+            std::string kind, name;
+            bool is_in_use = true;
+        } record;
         const auto end_record = [&] {
-            if (kind == "IMAGE" && !name.empty()) names.push_back(name);
-            kind.clear();
-            name.clear();
+            const Record ended = std::exchange(record, {});
+            if (ended.kind == "IMAGE" && ended.is_in_use && !ended.name.empty()) {
+                names.push_back(ended.name);
+            }
         };
         for (int depth = 0; at < end;) {
             const DicomElement e = element(at, true);
@@ -62,9 +67,15 @@ class IndexRecords : private DicomElements {
                 ++depth;
                 continue;
             }
-            if (e.tag == 0x00041430) kind = value(at, e.length);
-            if (e.tag == 0x00041500) name = value(at, e.length);
-            at = end_of(at, e.length);
+            const std::uint64_t next = end_of(at, e.length);
+            if (depth == 0) {
+                if (e.tag == 0x00041410 && e.length == 2) {
+                    record.is_in_use = number<std::uint16_t>(at) != 0;
+                }
+                if (e.tag == 0x00041430) record.kind = value(at, e.length);
+                if (e.tag == 0x00041500) record.name = value(at, e.length);
+            }
+            at = next;
         }
         if (!has_mark && at != end) fail("is damaged (a record is longer than the list)");
         end_record();

@@ -281,6 +281,45 @@ TEST(dicom_folder, a_damaged_index_does_not_keep_the_slices_from_being_read) {
     EXPECT_TRUE(contains(notes_with("a list of files"), "'DICOMDIR' is no DICOM file"));
 }
 
+/// An index of the four slices, and of a record with these elements.
+std::string index_with(const std::string& elements) {
+    const std::string whole = index_of_disc(true);
+    const std::size_t start = whole.find(tag_bytes(0x0004, 0x1220));
+    return whole.substr(0, start) +
+           long_element(0x0004, 0x1220, "SQ", whole.substr(start + 12) + item_of(elements));
+}
+
+TEST(dicom_folder, an_index_names_its_images_outside_of_sequences_and_in_use) {
+    const ScratchFolder folder;
+    put_disc(folder.path());
+    const auto says_missing = [&](const std::string& elements) {
+        put_bytes(folder / "DICOMDIR", index_with(elements));
+        const VolumeFile file = read_volume(folder.path());
+        expect_usual(file);
+        EXPECT_FALSE(contains(all_notes(file), "could not be read")) << all_notes(file);
+        return contains(all_notes(file), "lists 1 images that are not in the folder");
+    };
+    const auto record = [](const std::string& kind, const std::string& name) {
+        return element(0x0004, 0x1430, "CS", kind) + element(0x0004, 0x1500, "CS", name);
+    };
+    const std::string lost = "DICOM\\PAT1\\LOST", there = "DICOM\\PAT1\\IM0";
+    const auto in_use = [](int flag) {
+        return element(0x0004, 0x1410, "US", little(static_cast<std::uint16_t>(flag)));
+    };
+    const auto sequence = [&](const std::string& elements) {  // without a length
+        return tag_bytes(0x0088, 0x0200) + std::string("SQ\0\0\xff\xff\xff\xff", 8) +
+               item_of(elements) + tag_bytes(0xfffe, 0xe0dd) + little(0U);
+    };
+    EXPECT_TRUE(says_missing(record("IMAGE", lost)));
+    EXPECT_TRUE(says_missing(in_use(0xffff) + record("IMAGE", lost)));
+    EXPECT_TRUE(says_missing(element(0x0004, 0x1410, "US", "") + record("IMAGE", lost)));
+    EXPECT_FALSE(says_missing(in_use(0) + record("IMAGE", lost)));
+    EXPECT_FALSE(says_missing(record("PRIVATE", lost)));
+    EXPECT_FALSE(says_missing(record("IMAGE", there) + sequence(record("IMAGE", lost))));
+    EXPECT_FALSE(says_missing(record("PRIVATE", lost) + sequence(record("IMAGE", lost))));
+    EXPECT_TRUE(says_missing(record("IMAGE", lost) + sequence(in_use(0) + record("", there))));
+}
+
 TEST(dicom_folder, any_byte_of_an_index_may_be_wrong) {
     const ScratchFolder folder;
     put_disc(folder.path());
