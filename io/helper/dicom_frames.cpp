@@ -104,12 +104,14 @@ void spread_stack(std::vector<DicomSlice>& slices, const FramesOfStack& stack) {
                s.is_numbered == first.is_numbered;
     };
     if (!first.position || stack.size() < 2 || !std::ranges::all_of(stack, is_here)) return;
-    if (!(first.is_numbered || first.between > 0) || are_moments(slices, stack)) return;
+    if (!(first.is_numbered || first.between != 0) || are_moments(slices, stack)) return;
     const auto number = [&](std::size_t i) { return slices[i].order; };
     const auto [least, most] = std::ranges::minmax(stack, {}, number);
     if (number(least) == number(most)) return;
     const double start = std::min(number(least), 1);  // a stack may begin in another file
-    const double step = first.thickness > 0 ? first.thickness : default_step;
+    const double step = first.between != 0    ? first.between
+                        : first.thickness > 0 ? first.thickness
+                                              : default_step;
     const Vec3 normal = first.row->cross(*first.column).normalized();
     for (std::size_t rank = 0; rank < stack.size(); ++rank) {
         DicomSlice& s = slices[stack[rank]];
@@ -120,7 +122,7 @@ void spread_stack(std::vector<DicomSlice>& slices, const FramesOfStack& stack) {
         add_note(s.notes,
                  "its frames all have one position: they were placed one behind the "
                  "other, " +
-                     text_of(step) + " mm apart");
+                     text_of(std::abs(step)) + " mm apart");
     }
 }
 
@@ -259,14 +261,13 @@ std::vector<DicomSlice> plain_frames(DicomSlice file, const DicomGroup& data) {
         for (DicomSlice& s : slices) s.notes.push_back(text);
     };
     const std::string all = "its " + std::to_string(file.frames) + " frames ";
-    const double between = data.number(between_tag, file.between);  // negative: against the normal
-    const Counted by = counted(data, between);
+    const Counted by = counted(data, file.between);
     if (by == Counted::otherwise) {
         throw Failure(quoted(file.file) +
                       " counts its frames by more than their place or time (projections, phases); "
                       "export a reconstructed volume");
     }
-    const bool has_place = file.position || data.has(between_tag) || file.between > 0;
+    const bool has_place = file.position || data.has(between_tag) || file.between != 0;
     if (by == Counted::by_time || (by == Counted::by_nothing && !has_place && is_film(data))) {
         set_film(slices, data);
         return slices;
@@ -286,12 +287,12 @@ std::vector<DicomSlice> plain_frames(DicomSlice file, const DicomGroup& data) {
     }
     const std::vector<int> order = order_of(file, data);
     for (std::size_t i = 0; i < slices.size(); ++i) slices[i].order = order[i];
-    check_coordinate(between, "DICOM tag SpacingBetweenSlices");
-    if (between != 0) {
+    check_coordinate(file.between, "DICOM tag SpacingBetweenSlices");
+    if (file.between != 0) {
         if (by == Counted::by_nothing && has_time(data)) {
             note(all + "have a distance and a time between them: they were taken as slices");
         }
-        place_behind(slices, even_distances(order, between));
+        place_behind(slices, even_distances(order, file.between));
         return slices;
     }
     const double step = file.thickness > 0 ? file.thickness : default_step;

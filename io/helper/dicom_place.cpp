@@ -101,7 +101,10 @@ void set_pixel(DicomSlice& s, const DicomGroup& measures) {
         check_spacing(s.aspect, "DICOM tag PixelAspectRatio");
     }
     const double between = measures.number(between_tag, 0);
-    if (between > 0) s.between = s.thickness = between;
+    if (between != 0) {
+        s.between = between;
+        s.thickness = std::abs(between);
+    }
     if (!(s.thickness > 0)) s.thickness = measures.number(thickness_tag, 0);
 }
 

@@ -51,8 +51,8 @@ struct DicomSlice {
     std::optional<Vec3> row, column;  ///< unit vectors along a row and along a column
     std::optional<Vec3> pixel;        ///< [mm] between columns, between rows, 0
     double aspect = 1;                ///< of a pixel, height : width, if its size is not given
-    double between = 0;               ///< [mm] SpacingBetweenSlices; 0 if not given
-    double thickness = 0;             ///< [mm] between slices or of one; 0 if not given
+    double between = 0;    ///< [mm] SpacingBetweenSlices, negative against the normal; 0: not given
+    double thickness = 0;  ///< [mm] between slices or of one; 0 if not given
     double slope = 1, intercept = 0;  ///< of the values [units]
     bool has_rescale = false;         ///< it gives both of these, or a table
     bool has_colours = false;

@@ -77,9 +77,10 @@ Steps steps_of(Stack& stack, const DicomSlice& one) {
     std::sort(sorted.begin(), sorted.end());
     // Segmentations leave out the slices that have nothing of a segment.
     const bool are_empty = one.values.modality == "SEG";
-    const bool is_told = one.between > 0 && one.between < 1.1 * sorted.front();
+    const double between = std::abs(one.between);
+    const bool is_told = between > 0 && between < 1.1 * sorted.front();
     const double usual = !are_empty ? sorted[(sorted.size() - 1) / 2]  // fewer slices lost
-                         : is_told  ? one.between
+                         : is_told  ? between
                                     : sorted.front();
     const double total = stack.slices.back().along;
     const double rounding = std::min(0.01, 0.1 * usual);  // [mm] in the files' decimals

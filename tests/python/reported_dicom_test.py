@@ -63,6 +63,28 @@ def test_the_padding_of_frames_is_in_their_units(tmp_path, intercept):
     assert loaded.values["padding"] == -2000 + intercept == loaded.volume.array.min()
 
 
+# Distances between frames: the sign of a group counts, and 0 is none.
+@pytest.mark.parametrize("between, at_top, gap", ((-4, None, 4), (4, 0, 4), (0, 5, 5), (-4, 5, 4), (0, None, 2), (0, -5, 5)))
+def test_a_distance_that_frames_share_keeps_its_sign_and_zero_is_none(tmp_path, between, at_top, gap):
+    data = described_together(ramp("i2"), **({} if at_top is None else {"SpacingBetweenSlices": at_top}))
+    data.SharedFunctionalGroupsSequence[0].PixelMeasuresSequence[0].SpacingBetweenSlices = between
+    loaded = palpate.load(save(tmp_path / "a", [data]))
+    told = between or at_top or 0
+    assert loaded.volume.geometry.spacing[2] == gap
+    assert numpy.array_equal(loaded.volume.array, (2 * ramp("i2") - 1000)[:: -1 if told < 0 else 1])
+    assert any("do not say where they lie" in note for note in loaded.notes) == (told == 0), loaded.notes
+
+
+@pytest.mark.parametrize("between", (4, -4))
+def test_frames_of_one_position_lie_on_the_side_that_their_distance_tells(tmp_path, between):
+    folder = enhanced(tmp_path / "a", ramp("i2"), [0] * SHAPE[0], lambda i: {})
+    data = pydicom.dcmread(folder / "001.dcm")
+    data.SharedFunctionalGroupsSequence[0].PixelMeasuresSequence[0].SpacingBetweenSlices = between
+    data.save_as(folder / "001.dcm")
+    volume = noted(folder, "one behind the other, 4 mm apart")
+    assert volume.geometry.spacing[2] == 4 and numpy.array_equal(volume.array, ramp("i2")[:: between // 4])
+
+
 # Units ------------------------------------------------------------------------------------------------
 
 

@@ -230,7 +230,7 @@ function framesOf({ header, pixelKind }) {
     const between = one.numbers(tags.between, 1)?.[0];
     return {
       ...format, pixels: pixels.subarray(i * format.size, (i + 1) * format.size), spacing, position: one.numbers(tags.position, 3),
-      orientation: unitVectors(one.numbers(tags.orientation, 6)), thickness: between > 0 ? between : one.numbers(tags.thickness, 1)?.[0],
+      orientation: unitVectors(one.numbers(tags.orientation, 6)), thickness: Math.abs(between) || one.numbers(tags.thickness, 1)?.[0],
       slope: one.numbers(tags.slope, 1)?.[0], intercept: one.numbers(tags.intercept, 1)?.[0] ?? 0, modality: one.text(tags.modality),
       isRescaled: one.has(tags.slope) && one.has(tags.intercept), units: one.text(tags.units),
       aspect: one.numbers(tags.aspect, 2), isInverse: one.text(tags.colours) === "MONOCHROME1",
