@@ -132,6 +132,7 @@ class SessionBar : public EffectForm {
         forces_->setFont(big);
         forces_->setMinimumHeight(static_cast<int>(2.6 * fontMetrics().height()));
         contact_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
+        contact_->setWordWrap(true);
         contact_->setFixedHeight(2 * fontMetrics().lineSpacing());  // of a tool in contact
         contact_->setAlignment(Qt::AlignTop);
         auto* switches = column_of({freeze, clutch});
@@ -201,12 +202,14 @@ class SessionBar : public EffectForm {
         const Ruler ruler = ruler_of(effect_.field().geometry());
         const double apart = (tick.proxy.scp - tick.proxy.hip).norm();
         const bool touching = tick.proxy.mode == palpate::Mode::constrained;
-        QString text = (touching ? tr("In contact, pull %1 mm (%2 %3 in the volume)")
-                                 : tr("Free, pull %1 mm (%2 %3 in the volume)"))
-                           .arg(apart / now.session.transform.scale, 0, 'f', 2)
+        const QString state = (touching ? tr("In contact, pull %1 mm") : tr("Free, pull %1 mm"))
+                                  .arg(apart / now.session.transform.scale, 0, 'f', 2);
+        QString text = state + ' ' +
+                       tr("(%1 %2 in the volume)")
                            .arg(QString::fromStdString(ruler.number(apart, 2)),
                                 QCoreApplication::translate("Units", ruler.unit));
         if (tick.tool.contacts > 0) {
+            if (fontMetrics().horizontalAdvance(text) > contact_->width()) text = state;
             text +=
                 '\n' + tr("%n points of the tool hold, torque %1 N mm", nullptr, tick.tool.contacts)
                            .arg(tick.torque.norm(), 0, 'f', 1);

@@ -3070,12 +3070,16 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <translation>etwas zurückziehen</translation>
     </message>
     <message>
-        <source>In contact, pull %1 mm (%2 %3 in the volume)</source>
-        <translation>In Kontakt, Zug %1 mm (%2 %3 im Volumen)</translation>
+        <source>In contact, pull %1 mm</source>
+        <translation>In Kontakt, Zug %1 mm</translation>
     </message>
     <message>
-        <source>Free, pull %1 mm (%2 %3 in the volume)</source>
-        <translation>Frei, Zug %1 mm (%2 %3 im Volumen)</translation>
+        <source>Free, pull %1 mm</source>
+        <translation>Frei, Zug %1 mm</translation>
+    </message>
+    <message>
+        <source>(%1 %2 in the volume)</source>
+        <translation>(%1 %2 im Volumen)</translation>
     </message>
     <message>
         <source>Whether the proxy is on a surface, and how far it is from the hand (of the hand, and in the volume)</source>

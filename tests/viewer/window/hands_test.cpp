@@ -58,7 +58,8 @@ TEST_F(TwoHands, each_has_settings_of_its_own_and_the_panel_says_whose_it_shows)
     EXPECT_NE(settings_of(1).force.stiffness, 0.111);
     wait_until([&] { return window_->views().shown().isovalue == level + 20; });
     button_of(2).setFocus();
-    QTest::keyClick(&button_of(2), Qt::Key_Left);
+    const bool below = button_of(2).y() > button_of(1).y();  // where one line is too short for both
+    QTest::keyClick(&button_of(2), below ? Qt::Key_Up : Qt::Key_Left);
     EXPECT_EQ(content().hand(), 1);
     press(Qt::Key_N);
     QTest::mouseClick(&button_of(1), Qt::LeftButton);
