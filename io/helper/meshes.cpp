@@ -11,16 +11,19 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
+#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <iterator>
 #include <limits>
 #include <new>
 #include <optional>
+#include <span>
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 #include "io/helper/ply_mesh.hpp"
@@ -71,10 +74,7 @@ struct Polygons {
     vtkNew<vtkCellArray> faces;
 
     Polygons() { points->SetDataTypeToDouble(); }
-    /// Without corners that are the one before, for which VTK drops a face.
-    void add_face(std::vector<vtkIdType> corners) const {
-        corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
-        while (corners.size() > 1 && corners.back() == corners.front()) corners.pop_back();
+    void add_face(const std::vector<vtkIdType>& corners) const {
         faces->InsertNextCell(static_cast<vtkIdType>(corners.size()), corners.data());
     }
     vtkSmartPointer<vtkPolyData> data() const {
@@ -201,43 +201,130 @@ void check_faces(vtkCellArray& faces, vtkIdType vertices) {
     }
 }
 
-/// Twice the area of a polygon as a vector, which is that of its triangles together.
-Vec3 area_of(vtkPoints& points, vtkIdType count, const vtkIdType* ids) {
-    Vec3 area = Vec3::Zero(), first, before, corner;
-    for (vtkIdType i = 0; i < count; ++i) {
-        points.GetPoint(ids[i], corner.data());
-        if (i == 0) first = corner;
-        if (i > 1) area += (before - first).cross(corner - first);
-        before = corner;
+void check_finite(vtkPolyData& mesh) {
+    for (vtkIdType i = 0; i < mesh.GetNumberOfPoints(); ++i) {
+        double at[3];
+        mesh.GetPoint(i, at);
+        if (!std::isfinite(at[0] + at[1] + at[2])) {
+            throw Failure("vertex " + std::to_string(i) + " is not finite; export it again");
+        }
     }
-    return area;
 }
 
-/// VTK drops a polygon that it cannot divide, for example one that touches itself around a hole.
-void check_divided(vtkPolyData& mesh) {
+using Triangles = EarClip::Triangles;
+
+/// A face without corners at the place of the one before, for which VTK drops it.
+struct Face {
+    std::vector<vtkIdType> ids;
+    std::vector<Vec3> corners;
+
+    Face(vtkPoints& points, std::span<const vtkIdType> all) {
+        for (const vtkIdType id : all) {
+            Vec3 corner;
+            points.GetPoint(id, corner.data());
+            if (!corners.empty() && corner == corners.back()) continue;
+            ids.push_back(id);
+            corners.push_back(corner);
+        }
+        while (corners.size() > 1 && corners.back() == corners.front()) {
+            ids.pop_back();
+            corners.pop_back();
+        }
+    }
+    /// Twice the area of a triangle as a vector.
+    Vec3 area(std::size_t a, std::size_t b, std::size_t c) const {
+        return (corners[b] - corners[a]).cross(corners[c] - corners[a]);
+    }
+    /// The same of all, which is that of its triangles together.
+    Vec3 area() const {
+        Vec3 sum = Vec3::Zero();
+        for (std::size_t i = 2; i < corners.size(); ++i) sum += area(0, i - 1, i);
+        return sum;
+    }
+    /// The part of the area that triangles do not have.
+    double left_by(const Triangles& triangles) const {
+        Vec3 left = area();
+        for (const auto& [a, b, c] : triangles) left -= area(a, b, c);
+        return left.norm();
+    }
+};
+
+Triangles divided_by_vtk(const Face& face, vtkPoints& points) {
     const vtkNew<vtkPolygon> polygon;
-    const vtkNew<vtkIdList> triangles;
-    vtkPoints* const points = mesh.GetPoints();
+    const vtkNew<vtkIdList> found;
+    polygon->Initialize(static_cast<int>(face.ids.size()), face.ids.data(), &points);
+    polygon->Triangulate(found);
+    Triangles triangles;
+    for (vtkIdType t = 0; t + 2 < found->GetNumberOfIds(); t += 3) {
+        auto& triangle = triangles.emplace_back();
+        for (std::size_t c = 0; c < 3; ++c) {
+            triangle[c] = static_cast<std::size_t>(found->GetId(t + static_cast<vtkIdType>(c)));
+        }
+    }
+    return triangles;
+}
+
+/// In the plane of its area.
+Triangles divided_by_ears(const Face& face) {
+    const Vec3 normal = face.area().normalized();
+    if (normal.isZero()) return {};
+    const Vec3 right = normal.unitOrthogonal(), up = normal.cross(right);
+    std::vector<Eigen::Vector2d> corners;
+    for (const Vec3& corner : face.corners) {
+        const Vec3 from_first = corner - face.corners[0];
+        corners.emplace_back(from_first.dot(right), from_first.dot(up));
+    }
+    return EarClip(std::move(corners)).triangles();
+}
+
+/// Those of VTK, unless it fails, as it does on many outlines that are not convex. Nothing of a
+/// face without area.
+Triangles triangles_of(const Face& face, vtkPoints& points) {
+    double length = 0, reach = 0, greatest = 0;
+    for (std::size_t i = 0; i < face.corners.size(); ++i) {
+        length = std::max(length, (face.corners[i] - face.corners[0]).norm());
+        reach = std::max(reach, face.corners[i].norm());
+        if (i > 1) greatest = std::max(greatest, face.area(0, i - 1, i).norm());
+    }
+    // Corners that were on a line before numbers were rounded, to seven digits or fewer decimals.
+    const double no_area = 1e-6 * length * reach + 1e-4 * length * length;
+    Triangles triangles = divided_by_vtk(face, points);
+    double left = face.left_by(triangles);
+    if (triangles.empty() || left > 1e-9 * length * length) {
+        Triangles ears = divided_by_ears(face);
+        const double left_by_ears = face.left_by(ears);
+        if (triangles.empty() || left_by_ears < left) {
+            triangles = std::move(ears);
+            left = left_by_ears;
+        }
+    }
+    if (greatest <= no_area || (left <= no_area && !triangles.empty())) return triangles;
+    throw Failure("a face of " + std::to_string(face.corners.size()) +
+                  " corners cannot be divided into triangles; export it again as triangles");
+}
+
+/// Its strips, and its faces with up to four corners, which VTK always divides. VTK drops other
+/// faces that it cannot divide, so they become triangles here.
+vtkSmartPointer<vtkPolyData> divided(vtkPolyData& mesh) {
+    if (mesh.GetPolys()->GetMaxCellSize() <= 3) return &mesh;
+    const vtkNew<vtkCellArray> faces;
     vtkIdType count = 0;
     const vtkIdType* ids = nullptr;
     for (mesh.GetPolys()->InitTraversal(); mesh.GetPolys()->GetNextCell(count, ids) != 0;) {
-        if (count < 4) continue;
-        polygon->Initialize(static_cast<int>(count), ids, points);
-        polygon->Triangulate(triangles);
-        Vec3 left = area_of(*points, count, ids);
-        double most = left.norm();
-        for (vtkIdType t = 0; t + 2 < triangles->GetNumberOfIds(); t += 3) {
-            const std::array<vtkIdType, 3> corners{ids[triangles->GetId(t)],
-                                                   ids[triangles->GetId(t + 1)],
-                                                   ids[triangles->GetId(t + 2)]};
-            const Vec3 area = area_of(*points, 3, corners.data());
-            left -= area;
-            most = std::max(most, area.norm());
+        if (count < 4) {
+            faces->InsertNextCell(count, ids);
+            continue;
         }
-        if (left.norm() <= 1e-6 * most) continue;
-        throw Failure("a face of " + std::to_string(count) +
-                      " corners cannot be divided into triangles (it touches or crosses itself); "
-                      "export it again as triangles");
+        const Face face(*mesh.GetPoints(), {ids, static_cast<std::size_t>(count)});
+        const std::size_t corners = face.ids.size();
+        if (corners == 3 || corners == 4) {
+            faces->InsertNextCell(static_cast<vtkIdType>(corners), face.ids.data());
+        } else if (corners > 4) {
+            for (const auto& triangle : triangles_of(face, *mesh.GetPoints())) {
+                faces->InsertNextCell(3);
+                for (const std::size_t corner : triangle) faces->InsertCellPoint(face.ids[corner]);
+            }
+        }
     }
 }
 
@@ -247,9 +334,9 @@ MeshSize read_mesh(const std::filesystem::path& path, const std::string& extensi
     const vtkSmartPointer<vtkPolyData> read = read_poly_data(path, extension);
     check_faces(*read->GetPolys(), read->GetNumberOfPoints());
     check_faces(*read->GetStrips(), read->GetNumberOfPoints());
-    check_divided(*read);
+    check_finite(*read);
     const vtkNew<vtkTriangleFilter> filter;
-    filter->SetInputData(read);
+    filter->SetInputData(divided(*read));
     filter->PassVertsOff();
     filter->PassLinesOff();
     filter->Update();
@@ -264,16 +351,15 @@ MeshSize read_mesh(const std::filesystem::path& path, const std::string& extensi
     void* const memory = memory_of_caller(mesh_bytes(size.vertices, size.triangles));
     if (!memory) throw std::bad_alloc();
     auto* const vertices = static_cast<double*>(memory);
-    for (vtkIdType i = 0; i < size.vertices; ++i) {
-        double* const vertex = vertices + 3 * i;
-        mesh.GetPoint(i, vertex);
-        if (!std::isfinite(vertex[0] + vertex[1] + vertex[2])) {
-            throw Failure("vertex " + std::to_string(i) + " is not finite; export it again");
-        }
-    }
+    for (vtkIdType i = 0; i < size.vertices; ++i) mesh.GetPoint(i, vertices + 3 * i);
     auto* triangle = reinterpret_cast<std::uint32_t*>(vertices + 3 * size.vertices);
     vtkIdType count = 0;
     const vtkIdType* ids = nullptr;
+    auto made = vtkSmartPointer<vtkPolyData>::New();
+    made->SetPoints(mesh.GetPoints());
+    made->SetPolys(faces);
+    made->SetStrips(mesh.GetStrips());
+    return made;
     vtkCellArray& cells = *mesh.GetPolys();
     for (cells.InitTraversal(); cells.GetNextCell(count, ids) != 0;) {
         for (int i = 0; i < 3; ++i) *triangle++ = static_cast<std::uint32_t>(ids[i]);

@@ -346,10 +346,75 @@ def test_a_line_of_obj_goes_on_behind_a_backslash(tmp_path, end):
 OUTLINE = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 1 1 0\nv 1 3 0\nv 3 3 0\nv 3 1 0\n"
 
 
-def test_a_face_that_cannot_be_divided_is_refused_and_not_left_out(tmp_path):
-    """A frame around a hole. tinyobjloader/tinyobjloader#295, mikedh/trimesh#2519"""
-    with pytest.raises(palpate.InputError, match="face of 10 corners cannot be divided"):
-        obj(tmp_path / "a.obj", OUTLINE + "f 1 2 3 4 1 5 6 7 8 5\nf 1 2 3\n")
+def outlined(corners):
+    lines = [f"v {x:.6f} {y:.6f} {z:.6f}" for x, y, z in corners]
+    return "\n".join(lines) + "\nf " + " ".join(str(i + 1) for i in range(len(corners))) + "\n"
+
+
+STAR = [(numpy.cos(0.8 * numpy.pi * i), numpy.sin(0.8 * numpy.pi * i), 0) for i in range(5)]
+
+
+@pytest.mark.parametrize("corners", (STAR, [(0, 0, 0), (2, 2, 0), (2, 1, 0), (2, 0, 0), (0, 2, 0)]))
+def test_a_face_that_crosses_itself_is_refused_and_not_left_out(tmp_path, corners):
+    """mikedh/trimesh#2519"""
+    with pytest.raises(palpate.InputError, match="face of 5 corners cannot be divided"):
+        obj(tmp_path / "a.obj", outlined(corners) + "f 1 2 3\n")
+
+
+def turned(corners, random):
+    return numpy.array(corners) @ numpy.linalg.qr(random.normal(size=(3, 3)))[0] + random.normal(size=3) * 300
+
+
+def test_outlines_that_are_not_convex_keep_their_area(tmp_path):
+    """VTK alone loses 13 % of these faces."""
+    random = numpy.random.default_rng(0)
+    faces = 0
+    while faces < 200:
+        count = random.integers(4, 40)
+        angles, radii = numpy.sort(random.uniform(0, 2 * numpy.pi, count)), random.uniform(2, 20, count)
+        if max(numpy.diff(numpy.append(angles, angles[0] + 2 * numpy.pi))) > 3:
+            continue  # the middle is outside
+        faces += 1
+        corners = numpy.round(turned(numpy.column_stack([radii * numpy.cos(angles), radii * numpy.sin(angles), 0 * angles]), random), 4)
+        whole = sum(numpy.cross(a - corners[0], b - corners[0]) for a, b in itertools.pairwise(corners[1:]))
+        assert area(*obj(tmp_path / "a.obj", outlined(corners))) == pytest.approx(numpy.linalg.norm(whole) / 2, rel=1e-4)
+
+
+def test_a_face_around_a_hole_keeps_the_hole(tmp_path):
+    """tinyobjloader/tinyobjloader#295"""
+    vertices, triangles = obj(tmp_path / "a.obj", OUTLINE + "f 1 2 3 4 1 5 6 7 8 5\n")
+    assert area(vertices, triangles) == pytest.approx(12)
+    middles = vertices[triangles].mean(axis=1)
+    assert not numpy.any(numpy.all((middles[:, :2] > 1) & (middles[:, :2] < 3), axis=1))
+
+
+def test_faces_without_area_are_no_reason_to_refuse_a_mesh(tmp_path):
+    random = numpy.random.default_rng(1)
+    for count in (*[4] * 20, *[5] * 20, *[9] * 20):
+        line = numpy.outer(numpy.sort(random.uniform(0, 1, count)), random.normal(size=3)) + random.normal(size=3) * 50
+        vertices, triangles = obj(tmp_path / "a.obj", outlined(line) + "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n")
+        assert area(vertices, triangles) == pytest.approx(0.5, abs=0.01)
+
+
+@pytest.mark.parametrize("shares", (False, True))
+def test_a_sphere_of_quads_has_a_triangle_for_each_of_those_at_its_poles(tmp_path, shares):
+    """Two corners of a quad at a pole are at one place, with two numbers."""
+    def place(i, j):
+        polar, around = numpy.pi * i / 8, 2 * numpy.pi * j / 12
+        return 10 * numpy.sin(polar) * numpy.cos(around), 10 * numpy.sin(polar) * numpy.sin(around), 10 * numpy.cos(polar)
+    quads = [((i, j), (i, j + 1), (i + 1, j + 1), (i + 1, j)) for i in range(8) for j in range(12)]
+    used = list(itertools.product(range(9), range(13))) if shares else [corner for quad in quads for corner in quad]
+    numbered = [[used.index(corner) for corner in quad] if shares else range(4 * q, 4 * q + 4) for q, quad in enumerate(quads)]
+    text = "".join("v {:.6f} {:.6f} {:.6f}\n".format(*place(*corner)) for corner in used)
+    vertices, triangles = obj(tmp_path / "a.obj", text + "".join(f"f {' '.join(str(n + 1) for n in quad)}\n" for quad in numbered))
+    assert len(triangles) == 168 and area(vertices, triangles) == pytest.approx(400 * numpy.pi, rel=0.08)
+
+
+@pytest.mark.parametrize("corners, triangles", (("1 1 1  1 1 1  2 1 1  2 2 1", 1), ("1 1 1  1 1 1  2 1 1  2 1 1", 0),
+                                                (".1 .1 .1  .1 .1 .1  .3 .2 .1  .3 .2 .1  .7 .9 .2", 1)))
+def test_neighbouring_corners_at_one_place_are_one(tmp_path, corners, triangles):
+    face = outlined(numpy.array(corners.split(), float).reshape(-1, 3))
+    assert len(obj(tmp_path / "a.obj", face + "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n")[1]) == triangles + 1
 
 
 @pytest.mark.parametrize("face, whole", (("1 2 3 4", 16), ("1 2 3 4 1", 16), ("1 2 7 4", 12), ("4 1 2 7", 12), ("1 1 2 3", 8), ("1 2 2 1", None)))
