@@ -26,6 +26,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/helper/ear_clip.hpp"
 #include "io/helper/ply_mesh.hpp"
 #include "io/helper/protocol.hpp"
 #include "io/helper/readers.hpp"
@@ -86,39 +87,73 @@ struct Polygons {
 };
 
 /// Whether a line of OBJ goes on in the next one, by a backslash at its end, which is taken off.
+/// Blanks may follow it in lines of numbers. In others it may belong to a path of Windows.
 bool goes_on(std::string& line) {
     const std::size_t end = line.find_last_not_of(" \t");
     if (end == std::string::npos || line[end] != '\\') return false;
+    std::string word;
+    std::istringstream(line) >> word;
+    const bool has_numbers = word == "v" || word == "vt" || word == "vn" || word == "f";
+    if (!has_numbers && end + 1 != line.size()) return false;
     line.resize(end);
     line += ' ';
     return true;
 }
 
+/// The length [mm] of a unit in a comment, which other words may follow. Nothing if the comment
+/// says that it is not known.
+std::optional<double> length_in_comment(const std::string& text) {
+    const char* const marks = " \t,;:.()[]\"'";
+    const std::size_t begin = std::min(text.find_first_not_of(marks), text.size());
+    const std::string unit = text.substr(begin, text.find_first_of(marks, begin) - begin);
+    for (const char* const none : {"", "unknown", "none", "unitless", "unspecified"}) {
+        if (unit == none) return std::nullopt;
+    }
+    if (const auto length = millimetres_in(unit)) return length;
+    throw Failure("its comment gives the unit of length '" + unit.substr(0, 40) +
+                  "', which is not known; write mm, cm, m or inches, or remove the comment");
+}
+
 /// The length [mm] of the unit that a comment names, as SketchUp and Onshape write it ("File units
 /// = meters"), or Mimics ("where 1 unit = 1000.0 mm"). Nothing of other comments.
 std::optional<double> unit_of(const std::string& comment) {
-    const std::string text = lower(comment);
-    const auto after = [&](const std::string& words) {
-        const std::size_t at = text.find(words);
-        return at == text.npos ? "" : trimmed(text.substr(at + words.size()));
-    };
-    if (const std::string unit = after("file units ="); !unit.empty()) return millimetres_in(unit);
-    std::istringstream words(after("where 1 unit ="));
-    std::string number, unit;
-    words >> number >> unit;
-    const auto times = number_from<double>(number);
-    const auto length = millimetres_in(unit);
-    if (!times || !length || !(*times > 0)) return std::nullopt;
-    return *times * *length;
+    std::string text = lower(comment);
+    text.erase(0, text.find_first_not_of("# \t(*-"));
+    const std::string_view file_units = "file units =", one_unit = "where 1 unit =";
+    if (text.starts_with(file_units)) {
+        return length_in_comment(text.substr(file_units.size()));
+    }
+    const std::size_t at = text.find(one_unit);
+    const bool is_word =
+        at == 0 || (at != text.npos && !std::isalnum(static_cast<unsigned char>(text[at - 1])));
+    if (!is_word) return std::nullopt;
+    text = trimmed(text.substr(at + one_unit.size()));
+    double times = 0;
+    const auto [unit, error] = read_number(text.data(), text.data() + text.size(), times);
+    if (error != std::errc{} || !std::isfinite(times) || !(times > 0)) return std::nullopt;
+    const auto length = length_in_comment(unit);
+    return length ? std::optional(times * *length) : std::nullopt;
+}
+
+void scale(vtkPoints& points, double factor) {
+    for (vtkIdType i = 0; i < points.GetNumberOfPoints(); ++i) {
+        Vec3 at;
+        points.GetPoint(i, at.data());
+        at *= factor;
+        points.SetPoint(i, at.data());
+    }
 }
 
 /// Vertices and faces. Not by VTK, whose reader loses faces that count their vertices backwards.
 vtkSmartPointer<vtkPolyData> read_obj(const std::filesystem::path& path) {
     std::istringstream in(plain_text(bytes_of(path)));
     const Polygons mesh;
-    double unit = 1;
+    std::optional<double> unit;
     for (std::string line, comment; next_line(in, line, &comment);) {
-        unit = unit_of(comment).value_or(unit);
+        if (const auto told = unit_of(comment)) {
+            if (!unit) scale(*mesh.points, *told);  // those before it, too
+            unit = told;
+        }
         for (std::string more; goes_on(line) && next_line(in, more);) line += more;
         std::istringstream words(line);
         std::string word;
@@ -132,7 +167,7 @@ vtkSmartPointer<vtkPolyData> read_obj(const std::filesystem::path& path) {
                     throw Failure("'" + line.substr(0, 60) +
                                   "' is no vertex of three numbers; export it again");
                 }
-                coordinate = unit * *number;
+                coordinate = unit.value_or(1) * *number;
             }
             mesh.points->InsertNextPoint(at);
         } else if (word == "f") {
@@ -326,6 +361,11 @@ vtkSmartPointer<vtkPolyData> divided(vtkPolyData& mesh) {
             }
         }
     }
+    auto made = vtkSmartPointer<vtkPolyData>::New();
+    made->SetPoints(mesh.GetPoints());
+    made->SetPolys(faces);
+    made->SetStrips(mesh.GetStrips());
+    return made;
 }
 
 }  // namespace
@@ -355,11 +395,6 @@ MeshSize read_mesh(const std::filesystem::path& path, const std::string& extensi
     auto* triangle = reinterpret_cast<std::uint32_t*>(vertices + 3 * size.vertices);
     vtkIdType count = 0;
     const vtkIdType* ids = nullptr;
-    auto made = vtkSmartPointer<vtkPolyData>::New();
-    made->SetPoints(mesh.GetPoints());
-    made->SetPolys(faces);
-    made->SetStrips(mesh.GetStrips());
-    return made;
     vtkCellArray& cells = *mesh.GetPolys();
     for (cells.InitTraversal(); cells.GetNextCell(count, ids) != 0;) {
         for (int i = 0; i < 3; ++i) *triangle++ = static_cast<std::uint32_t>(ids[i]);

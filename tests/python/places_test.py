@@ -328,12 +328,30 @@ def area(vertices, triangles):
 
 @pytest.mark.parametrize("comment, unit", (("# File units = meters", 1000), ("# Units\n# File units = inches", 25.4), ("# File units = mm", 1),
                                            ("# vertex coordinates are measured in units, where 1 unit = 1000.000000 mm", 1000),
-                                           ("# where 1 unit = 2 cm", 20), ("# File units = cubits", 1), ("# 1 unit = 7 mm", 1),
-                                           ("# where 1 unit = -1 mm", 1), ("# meters", 1)))
+                                           ("# where 1 unit = 2 cm", 20), ("# 1 unit = 7 mm", 1), ("# (where 1 unit = 1000.0 mm)", 1000),
+                                           ("# where 1 unit = 1000.0mm", 1000), ("# File units = meters, Y up", 1000),
+                                           ("# where 1 unit = 10 (mm)", 10), ("# (File units = cm)", 10),
+                                           ("# profile units = in", 1), ("# nowhere 1 unit = 2 m", 1), ("# where 1 unit = inf mm", 1),
+                                           ("# where 1 unit = nan mm", 1), ("# File units = unknown", 1), ("# File units =", 1),
+                                           ("# where 1 unit = -1 mm", 1), ("# where 1 unit = 2", 1), ("# meters", 1)))
 def test_a_comment_of_obj_may_give_its_unit(tmp_path, comment, unit):
     """Slicer/Slicer#9360 (Mimics), vkoskiv/c-ray#112 (Onshape)"""
     vertices, _ = obj(tmp_path / "a.obj", f"{comment}\nv 0 0 0\nv 1 0 0\nv 0 2 0\nf 1 2 3\n")
-    assert numpy.allclose(vertices, unit * numpy.array([(0, 0, 0), (1, 0, 0), (0, 2, 0)]))
+    expected = unit * numpy.array([(0, 0, 0), (1, 0, 0), (0, 2, 0)])
+    assert numpy.allclose(vertices, expected)
+    behind, _ = obj(tmp_path / "a.obj", f"v 0 0 0\nv 1 0 0\nv 0 2 0\nf 1 2 3\n{comment}\n")
+    assert numpy.allclose(behind, expected)
+
+
+@pytest.mark.parametrize("comment", ("# File units = cubits", "# where 1 unit = 3 cubits"))
+def test_a_unit_of_obj_that_is_not_known_is_refused(tmp_path, comment):
+    with pytest.raises(palpate.InputError, match="unit of length 'cubits'"):
+        obj(tmp_path / "a.obj", f"{comment}\nv 0 0 0\nv 1 0 0\nv 0 2 0\nf 1 2 3\n")
+
+
+def test_each_unit_of_obj_holds_up_to_the_next_one(tmp_path):
+    vertices, _ = obj(tmp_path / "a.obj", "v 1 0 0\n# File units = cm\nv 0 1 0\n# File units = m\nv 0 0 1\nf 1 2 3\n")
+    assert numpy.allclose(vertices, numpy.diag([10, 10, 1000]))
 
 
 @pytest.mark.parametrize("end", ("\\\n", "\\ \n", "\\\t \r\n", " \\\r\n"))
@@ -390,6 +408,11 @@ def test_a_face_around_a_hole_keeps_the_hole(tmp_path):
 
 def test_faces_without_area_are_no_reason_to_refuse_a_mesh(tmp_path):
     random = numpy.random.default_rng(1)
+def test_a_path_of_windows_with_a_blank_at_its_end_hides_no_face_of_obj(tmp_path):
+    _, triangles = obj(tmp_path / "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\ng C:\\parts\\ \nf 1 2 3\n")
+    assert triangles.tolist() == [[0, 1, 2]]
+
+
     for count in (*[4] * 20, *[5] * 20, *[9] * 20):
         line = numpy.outer(numpy.sort(random.uniform(0, 1, count)), random.normal(size=3)) + random.normal(size=3) * 50
         vertices, triangles = obj(tmp_path / "a.obj", outlined(line) + "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n")
