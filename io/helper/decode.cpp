@@ -12,6 +12,11 @@
 namespace palpate::io {
 namespace {
 
+/// The greatest cosine between two axes, or deviation of the square of a length from 1.
+double distance_from_orthonormal(const Mat3& direction) {
+    return (direction.transpose() * direction - Mat3::Identity()).cwiseAbs().maxCoeff();
+}
+
 std::string gigabytes(double bytes) {
     return text_of(bytes / 1e9) + " GB";
 }
@@ -112,35 +117,41 @@ double distance_between(const Geometry& a, const Geometry& b) {
     return most;
 }
 
-std::optional<Geometry> straightened(const Geometry& geometry) {
+std::optional<Straightened> straightened(const Geometry& geometry) {
     constexpr double most = 0.01;  // of a cosine, and of a length
-    const auto farthest = [](const Mat3& direction) {
-        return (direction.transpose() * direction - Mat3::Identity()).cwiseAbs().maxCoeff();
-    };
     if (!geometry.direction.allFinite()) return std::nullopt;
-    if (farthest(geometry.direction) < 1e-4) return geometry;
-    Geometry nearest = geometry;
+    if (distance_from_orthonormal(geometry.direction) < 1e-4) return Straightened{geometry};
+    Straightened nearest{geometry, 0, true};
     for (int axis = 0; axis < 3; ++axis) {
         const double length = geometry.direction.col(axis).norm();
         if (std::abs(length - 1) > most) return std::nullopt;
-        nearest.direction.col(axis) /= length;
-        nearest.spacing[axis] *= length;
+        nearest.grid.direction.col(axis) /= length;
     }
-    if (farthest(nearest.direction) > most) return std::nullopt;
-    nearest = orthonormal(nearest);
-    if (distance_between(geometry, nearest) > 0.5 * nearest.spacing.minCoeff()) return std::nullopt;
+    const Geometry sheared = nearest.grid;
+    const double error = distance_from_orthonormal(sheared.direction);
+    if (error > most) return std::nullopt;
+    nearest.grid = orthonormal(sheared);
+    double least = std::numeric_limits<double>::infinity();
+    for (int axis = 0; axis < 3; ++axis) {
+        if (geometry.size[axis] > 1) least = std::min(least, geometry.spacing[axis]);
+    }
+    nearest.moved = distance_between(sheared, nearest.grid);
+    if (nearest.moved > 0.5 * least) return std::nullopt;
+    nearest.is_sheared = error >= 1e-4;
     return nearest;
 }
 
 void settle_geometry(const GivenGrid& given, Geometry& geometry, std::vector<std::string>& notes) {
     put_in(given, geometry);
-    const auto nearest = straightened(geometry);
-    if (nearest && nearest->direction != geometry.direction) {
+    if (const auto nearest = straightened(geometry); nearest && nearest->is_changed) {
         notes.push_back(
-            "its axes are not quite at right angles: the nearest grid that is so was taken, whose "
-            "samples lie up to " +
-            text_of(distance_between(geometry, *nearest)) + " mm from the file's");
-        geometry = *nearest;
+            nearest->is_sheared
+                ? "its axes are not quite at right angles: the nearest grid that is so was taken, "
+                  "whose samples lie up to " +
+                      text_of(nearest->moved) + " mm from the file's"
+                : "the vectors of its axes are not quite of length 1: they were taken as "
+                  "directions only, and the spacing is as it is given");
+        geometry = nearest->grid;
     }
     check_geometry(geometry);
 }

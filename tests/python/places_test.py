@@ -71,6 +71,7 @@ def test_axes_that_are_nearly_at_right_angles_are_straightened_and_the_distance_
     for cosine, is_read in ((0.0005, True), (0.009, True), (0.02, False)):
         shear = numpy.eye(3)
         shear[0, 1] = cosine
+        shear /= numpy.linalg.norm(shear, axis=0)
         axes, origin = turn(degrees) @ shear @ numpy.diag([1, 2, 3]), (10, 20, 30)
         path = WRITERS[kind](tmp_path / "a", axes, origin)
         if not is_read:
@@ -84,12 +85,32 @@ def test_axes_that_are_nearly_at_right_angles_are_straightened_and_the_distance_
         assert numpy.array_equal(palpate.open_store(path).levels[0].size, loaded.volume.geometry.size)
 
 
-def test_directions_with_a_few_digits_are_straightened_and_their_lengths_count(tmp_path):
+def test_directions_with_a_few_digits_are_straightened_and_do_not_scale_the_spacing(tmp_path):
     axes = numpy.round(turn(33), 3) @ numpy.diag([1, 2, 3])
-    volume = noted(in_meta_image(tmp_path / "a", axes, (1, 2, 3)), "right angles")
-    assert farthest(volume, axes, (1, 2, 3)) < 0.01
-    assert not numpy.array_equal(volume.geometry.spacing, (1, 2, 3))
+    path = in_meta_image(tmp_path / "a", axes, (1, 2, 3))
+    volume = noted(path, "right angles")
+    assert farthest(volume, axes, (1, 2, 3)) < 0.02
+    assert numpy.array_equal(volume.geometry.spacing, (1, 2, 3))
+    assert numpy.array_equal(palpate.load(path, spacing=(1, 1, 1)).volume.geometry.spacing, (1, 1, 1))
     refused(in_meta_image(tmp_path / "b", 1.02 * axes, (1, 2, 3)), "orthonormal")
+
+
+@pytest.mark.parametrize("directions", (0.998 * numpy.eye(3), [[0.71, -0.71, 0], [0.71, 0.71, 0], [0, 0, 1]]))
+def test_vectors_of_axes_that_only_have_other_lengths_give_directions(tmp_path, directions):
+    path = in_meta_image(tmp_path / "a", numpy.array(directions) @ numpy.diag([1, 2, 3]), (1, 2, 3))
+    geometry = noted(path, "length 1: they were taken as directions only").geometry
+    assert numpy.array_equal(geometry.spacing, (1, 2, 3)) and not any("right angles" in note for note in palpate.load(path).notes)
+    assert numpy.allclose(geometry.direction, directions / numpy.linalg.norm(directions, axis=0), atol=1e-12)
+    assert numpy.array_equal(palpate.load(path, spacing=(1, 1, 1)).volume.geometry.spacing, (1, 1, 1))
+
+
+def test_the_spacing_across_a_single_slice_does_not_limit_straightening(tmp_path):
+    data = numpy.arange(100, dtype="i2").reshape(1, 10, 10)
+    path = nrrd(tmp_path / "a.nrrd", data, "space: left-posterior-superior", "space directions: (1,0,0) (0.004,1,0) (0,0,1e-7)", "space origin: (0,0,0)")
+    assert numpy.array_equal(noted(path, "right angles").array, data)
+    affine = numpy.array([[1, 0.004, 0, 0], [0, 1, 0, 0], [0, 0, 1e-7, 0], [0, 0, 0, 1]])
+    with pytest.warns(UserWarning, match="right angles"):
+        assert numpy.array_equal(palpate.as_volume(SpatialImage(data.T, affine)).array, data)
 
 
 def test_a_long_grid_is_not_straightened_if_its_end_would_move_by_a_sample(tmp_path):

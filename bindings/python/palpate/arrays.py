@@ -151,7 +151,7 @@ def _has_no_spacings(affine, given, shape):
 
 def _right_angles(direction, spacing, shape):
     """The nearest direction whose axes are at right angles, and how far that moves the farthest sample [mm]. As
-    load() does it, none if that is more than half of the smallest spacing."""
+    load() does it, none if that is more than half of the smallest spacing of axes with several samples."""
     nearest = direction
     error = numpy.abs(direction.T @ direction - numpy.eye(3)).max()
     if error >= 1e-4:
@@ -159,7 +159,8 @@ def _right_angles(direction, spacing, shape):
         nearest = left @ right
     corners = numpy.array(list(itertools.product(*((0, size - 1) for size in shape)))).T
     moved = numpy.linalg.norm((nearest - direction) * spacing @ corners, axis=0).max()
-    return (nearest, moved) if error <= 0.01 and moved <= 0.5 * spacing.min() else (None, moved)
+    least = min((step for size, step in zip(shape, spacing) if size > 1), default=numpy.inf)
+    return (nearest, moved) if error <= 0.01 and moved <= 0.5 * least else (None, moved)
 
 
 def _is_sheared(affine, shape):
