@@ -64,13 +64,17 @@ std::optional<FilePattern> pattern_in(const std::string& name, std::int64_t step
     return pattern;
 }
 
+/// The file of the same name in the folder of the header.
+std::filesystem::path file_beside(const std::string& name, const std::filesystem::path& header) {
+    return header.parent_path() / name.substr(name.find_last_of("/\\") + 1);
+}
+
 /// Finds a data file at the place that the header names, or beside the header. Files that come from
 /// another folder or system ("C:\\scan\\a.raw") are usually put there.
 std::filesystem::path data_file(const std::string& name, const std::filesystem::path& header,
                                 std::vector<std::string>& notes) {
     const std::filesystem::path told = header.parent_path() / name;
-    const std::filesystem::path beside =
-        header.parent_path() / name.substr(name.find_last_of("/\\") + 1);
+    const std::filesystem::path beside = file_beside(name, header);
     std::error_code error;
     if (std::filesystem::exists(told, error) || !std::filesystem::is_regular_file(beside, error) ||
         beside == header) {
@@ -214,7 +218,9 @@ std::vector<std::filesystem::path> data_files(const std::string& name, const Hea
                                               const std::filesystem::path& header,
                                               std::vector<std::string>& notes, std::int64_t steps) {
     std::error_code error;
-    if (std::filesystem::is_regular_file(header.parent_path() / name, error)) steps = 0;
+    for (const auto& file : {header.parent_path() / name, file_beside(name, header)}) {
+        if (std::filesystem::is_regular_file(file, error)) steps = 0;  // its name is no pattern
+    }
     std::vector<std::filesystem::path> files;
     const auto add = [&](const std::string& file) {
         files.push_back(data_file(file, header, notes));

@@ -271,6 +271,15 @@ def test_a_file_of_a_name_like_a_pattern_goes_before_numbered_ones(tmp_path):
     assert numpy.array_equal(palpate.load(meta_image(tmp_path / "a.mhd", file="p%d.raw")).volume.array, ramp("i2"))
 
 
+@pytest.mark.parametrize("folder", ("", "/scans/", "C:\\scan\\", "scans/"))
+def test_a_file_of_a_name_like_a_pattern_may_have_been_moved_beside_its_header(tmp_path, folder):
+    (tmp_path / "50%data.raw").write_bytes(ramp("<i2").tobytes())
+    path = meta_image(tmp_path / "a.mhd", file=folder + "50%data.raw")
+    loaded = palpate.load(path)
+    assert numpy.array_equal(loaded.volume.array, ramp("i2"))
+    assert any("beside it" in note for note in loaded.notes) == (folder != "")
+
+
 @pytest.mark.parametrize("fields", (("kinds: domain domain time", "spacings: 2 3 0.5"),
                                     ("kinds: space space time", "space: left-posterior-superior", "space directions: (2,0,0) (0,3,0) none"),
                                     ("kinds: space space time", "space dimension: 2", "space directions: (2,0) (0,3) none")))
