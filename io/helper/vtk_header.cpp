@@ -140,13 +140,17 @@ Vec3 three_of(const VtkFields& fields, const std::string& name, double otherwise
     throw Failure("its header field '" + name + "' has not three numbers; correct the header");
 }
 
+/// Numbers of points.
+std::vector<std::int64_t> vtk_dimensions(const VtkFields& fields) {
+    const auto found = fields.find("dimensions");
+    auto sizes = sizes_in(found == fields.end() ? "" : found->second, "dimensions");
+    if (sizes.size() == 3) return sizes;
+    throw Failure("its header field 'dimensions' has not three numbers; correct the header");
+}
+
 /// Cells lie between the points that the dimensions count, with their samples in the middle.
 void take_vtk_grid(const VtkFields& fields, bool in_cells, VolumeHeader& header) {
-    const auto found = fields.find("dimensions");
-    header.sizes = sizes_in(found == fields.end() ? "" : found->second, "dimensions");
-    if (header.sizes.size() != 3) {
-        throw Failure("its header field 'dimensions' has not three numbers; correct the header");
-    }
+    header.sizes = vtk_dimensions(fields);
     Geometry& g = header.geometry;
     g.oriented = false;
     g.measured = fields.contains("spacing");
@@ -185,6 +189,15 @@ struct VtkSamples {
     Stored stored = Stored::uint8;
     bool in_cells = false;
     std::uint64_t offset = 0;  ///< of its first byte
+
+    /// Whether it has one number for each point, or each cell, of a grid with so many points.
+    bool fits(const std::vector<std::int64_t>& points) const {
+        double grid = 1;
+        for (const std::int64_t size : points) {
+            grid *= static_cast<double>(in_cells && size > 1 ? size - 1 : size);
+        }
+        return components == 1 && static_cast<double>(count) == grid;
+    }
 };
 
 /// Where a file is among its arrays.
@@ -269,15 +282,18 @@ std::optional<VtkSamples> next_samples(VtkWords& words, VtkSection& section, boo
 }
 
 /// The first array of points with one value for each, or else of cells, which ParaView writes
-/// before those of points. `section`: the first one.
+/// before those of points. An array of another length than the grid's (a time) is passed over.
+/// `section`: the first one. `points`: the numbers of points along the axes.
 VtkSamples chosen_samples(VtkWords& words, VtkSection section, bool is_text,
+                          const std::vector<std::int64_t>& points,
                           std::vector<std::string>& notes) {
     std::optional<VtkSamples> first, of_cells;
+    std::string unread;
     try {
         while (const auto samples = next_samples(words, section, is_text)) {
             const bool is_new = !first;
             if (is_new) first = samples;
-            if (samples->components == 1 && !samples->in_cells) {
+            if (samples->fits(points) && !samples->in_cells) {
                 if (!is_new) {
                     notes.emplace_back(
                         "it has several arrays: the first one of points with one value per sample "
@@ -285,14 +301,22 @@ VtkSamples chosen_samples(VtkWords& words, VtkSection section, bool is_text,
                 }
                 return *samples;
             }
-            if (samples->components == 1 && !of_cells) of_cells = samples;
+            if (samples->fits(points) && !of_cells) of_cells = samples;
             words.skip(samples->count * samples->components, samples->stored, is_text);
         }
-    } catch (const Failure&) {  // of what is behind an array
+    } catch (const Failure& e) {  // of what is behind an array
         if (!first) throw;
+        unread = e.what();
     }
-    if (of_cells) return *of_cells;
+    if (of_cells) {
+        if (!unread.empty()) {
+            notes.push_back("only samples of its cells were found, as what follows them " +
+                            ("cannot be read (" + unread + ")"));
+        }
+        return *of_cells;
+    }
     if (!first) throw Failure("it has no samples; export it again");
+    if (first->components == 1) return *first;  // its count is refused
     throw Failure("it has " + std::to_string(first->components) +
                   " values a sample (colours or vectors); give a volume with one");
 }
@@ -324,7 +348,8 @@ VolumeHeader vtk_header(const Request& request) {
     std::string kind;
     const VtkFields fields = vtk_fields(words, is_text, kind);
     const VtkSection section{kind == "cell_data", whole_number_in(words.rest(), kind, 0)};
-    const VtkSamples samples = chosen_samples(words, section, is_text, header.notes);
+    const VtkSamples samples =
+        chosen_samples(words, section, is_text, vtk_dimensions(fields), header.notes);
     take_vtk_grid(fields, samples.in_cells, header);
     check_vtk_count(samples.count, header);
     header.stored = samples.stored;

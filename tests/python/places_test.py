@@ -342,6 +342,23 @@ def test_without_samples_of_points_those_of_cells_are_taken(tmp_path, text):
     refused(vtk_file(tmp_path / "a.vtk", text, POINTS[0], ("SCALARS d short 99999\nLOOKUP_TABLE default", None)), "99999 values")
 
 
+@pytest.mark.parametrize("text", (False, True))
+def test_arrays_of_vtk_with_another_length_than_the_grid_are_passed_over(tmp_path, text):
+    """ParaView may keep a time or a cycle among the samples."""
+    fields = ("FIELD FieldData 2\nTimeValue 1 1 double", numpy.array([1.5])), ("density 1 120 short", ramp("i2"))
+    assert numpy.array_equal(noted(vtk_file(tmp_path / "a.vtk", text, POINTS[0], *fields), "several arrays").array, ramp("i2"))
+    refused(vtk_file(tmp_path / "a.vtk", text, POINTS[0], *fields[:1]), "1 samples, its grid is 6x4x5")
+
+
+@pytest.mark.parametrize("text", (False, True))
+def test_samples_of_cells_that_are_taken_as_others_cannot_be_read_are_noted(tmp_path, text):
+    ids = ("SCALARS ids vtkIdType\nLOOKUP_TABLE default", numpy.arange(120, dtype="i4"))
+    volume = noted(vtk_file(tmp_path / "a.vtk", text, *CELLS, POINTS[0], ids), "only samples of its cells were found")
+    assert numpy.array_equal(volume.array.ravel(), numpy.arange(60))
+    whole = palpate.load(vtk_file(tmp_path / "a.vtk", text, *CELLS))
+    assert not any("only samples" in note for note in whole.notes)
+
+
 # Meshes -----------------------------------------------------------------------------------------------------
 
 
@@ -388,6 +405,11 @@ def test_each_unit_of_obj_holds_up_to_the_next_one(tmp_path):
 def test_a_line_of_obj_goes_on_behind_a_backslash(tmp_path, end):
     """mikedh/trimesh#1103"""
     _, triangles = obj(tmp_path / "a.obj", f"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 {end} 3\n")
+    assert triangles.tolist() == [[0, 1, 2]]
+
+
+def test_a_path_of_windows_with_a_blank_at_its_end_hides_no_face_of_obj(tmp_path):
+    _, triangles = obj(tmp_path / "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\ng C:\\parts\\ \nf 1 2 3\n")
     assert triangles.tolist() == [[0, 1, 2]]
 
 
@@ -438,11 +460,6 @@ def test_a_face_around_a_hole_keeps_the_hole(tmp_path):
 
 def test_faces_without_area_are_no_reason_to_refuse_a_mesh(tmp_path):
     random = numpy.random.default_rng(1)
-def test_a_path_of_windows_with_a_blank_at_its_end_hides_no_face_of_obj(tmp_path):
-    _, triangles = obj(tmp_path / "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\ng C:\\parts\\ \nf 1 2 3\n")
-    assert triangles.tolist() == [[0, 1, 2]]
-
-
     for count in (*[4] * 20, *[5] * 20, *[9] * 20):
         line = numpy.outer(numpy.sort(random.uniform(0, 1, count)), random.normal(size=3)) + random.normal(size=3) * 50
         vertices, triangles = obj(tmp_path / "a.obj", outlined(line) + "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n")
