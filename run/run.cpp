@@ -310,7 +310,7 @@ void Run::record_together(std::span<Run* const> runs, const std::filesystem::pat
         Run& run = *runs[i];
         try {
             run.stop_recording(progress);
-        } catch (const io::OutputError&) {
+        } catch (...) {  // it may be of `progress`; the new recording runs
             lost = std::current_exception();
         }
         run.recording_ = recording;

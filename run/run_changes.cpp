@@ -10,6 +10,7 @@
 #include "devices/claim.hpp"
 #include "io/system/number.hpp"
 #include "palpate/run/run.hpp"
+#include "run/session_settings.hpp"
 
 namespace palpate::run {
 namespace {
@@ -40,6 +41,12 @@ class Gone final : public Device {
     const std::string problem_;
 };
 
+/// The same device with other options, or another one of the same kind, whose motors then count as
+/// warmer than they are for a minute or so.
+bool may_have_the_same_motors(const devices::DeviceChoice& a, const devices::DeviceChoice& b) {
+    return a.name == b.name;
+}
+
 }  // namespace
 
 /// If the device is the one that this run has, `close` closes it first.
@@ -62,20 +69,34 @@ std::unique_ptr<Device> Run::open_for(const Setup& setup, double isovalue,
 
 void Run::start_as(Run& before) {
     if (servo_) throw WrongState("a run starts once");
-    before.started_servo();  // throws before anything has changed
-    Session session = before.session_for(settings_, session_settings_, before.device());
+    before.started_servo();
+    Setup setup = setup_;
+    setup.buttons = before.setup_.buttons;  // they may have been chosen after this run was made
+    // Throws before anything has changed.
+    Session session =
+        before.session_for(settings_, session_settings(setup, device()), before.device());
     before.stop_servo();
     before.running_ = false;
     before.device_->stop();
-    const bool is_the_same = setup_.device == before.setup_.device;
-    if (is_the_same && before.device_failure() != DeviceFailure::hung) {
+    const bool hangs = before.device_failure() == DeviceFailure::hung;
+    if (!hangs && may_have_the_same_motors(setup_.device, before.setup_.device)) {
         session.renderer.force.motors.warmth =
             before.servo_->session().renderer.force.motors.warmth;
     }
-    field_ = before.field_;
-    hold(std::move(device_));
-    launch(std::move(session));
-    if (is_the_same && before.frozen_) send(command::Freeze{true});
+    const bool stays_frozen = setup_.device == before.setup_.device && before.frozen_;
+    try {
+        setup_ = std::move(setup);
+        field_ = before.field_;
+        hold(std::move(device_));
+        launch(std::move(session));
+    } catch (...) {  // the system gives no thread or no memory
+        if (!hangs) {
+            before.stop_recording();
+            before.launch(before.session_stopped());
+        }
+        throw;
+    }
+    if (stays_frozen) send(command::Freeze{true});
 }
 
 void Run::close_device() {
@@ -101,11 +122,11 @@ void Run::use_device(const devices::DeviceChoice& device, const OnProgress& prog
     if (progress) progress(1);
     try {
         auto opened = open_for(setup, isovalue, progress, [this] { close_device(); });
-        const bool is_the_same = !device_ || device == setup_.device;
+        const bool are_warm = !device_ || may_have_the_same_motors(device, setup_.device);
         const Session fitted = make_session(field_, isovalue, opened->info(), setup, progress);
         Session session = session_for(fitted.renderer.settings, fitted.settings, old);
         if (device_) close_device();
-        if (is_the_same) {  // its motors are as warm as they were
+        if (are_warm) {
             session.renderer.force.motors.warmth = servo_->session().renderer.force.motors.warmth;
         }
         setup_ = std::move(setup);
@@ -147,10 +168,10 @@ void Run::use_buttons(const Buttons& buttons) {
     started_servo();
     Setup setup = setup_;
     setup.buttons = buttons;
-    const Session fitted = make_session(field_, some_isovalue({}), device_->info(), setup);
+    const SessionSettings session = session_settings(setup, device());
     stop_recording();
     stop_servo();
-    session_settings_ = fitted.settings;
+    session_settings_ = session;
     setup_ = std::move(setup);
     launch(session_stopped());
 }

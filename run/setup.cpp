@@ -9,6 +9,7 @@
 #include "palpate/baselines/methods.hpp"
 #include "palpate/run/beside.hpp"
 #include "palpate/run/statistics.hpp"
+#include "run/session_settings.hpp"
 
 namespace palpate::run {
 namespace {
@@ -232,11 +233,15 @@ Session make_session(const Field& field, double isovalue, const DeviceInfo& info
     }
     RendererSettings settings = render_settings(render, field, isovalue, info.limits, progress);
     settings.transform = transform_for(field.geometry(), info, setup);
-    Session session{make_renderer(field, isovalue, settings), setup.session};
-    check(session.settings);
-    session.settings.clutch_buttons = bit_of(setup.buttons.clutch, "clutch", info.buttons);
-    session.settings.deadman_buttons = bit_of(setup.buttons.deadman, "dead-man", info.buttons);
-    if (session.settings.clutch_buttons & session.settings.deadman_buttons) {
+    return {make_renderer(field, isovalue, settings), session_settings(setup, info)};
+}
+
+SessionSettings session_settings(const Setup& setup, const DeviceInfo& info) {
+    SessionSettings session = setup.session;
+    check(session);
+    session.clutch_buttons = bit_of(setup.buttons.clutch, "clutch", info.buttons);
+    session.deadman_buttons = bit_of(setup.buttons.deadman, "dead-man", info.buttons);
+    if (session.clutch_buttons & session.deadman_buttons) {
         throw std::invalid_argument("clutch and dead-man switch are the same button: name another");
     }
     return session;

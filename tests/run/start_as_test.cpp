@@ -1,9 +1,78 @@
 // A run that starts in place of another one.
+#include <algorithm>
+#include <memory>
+#include <string>
+
 #include "palpate/run/run.hpp"
 #include "run/run_support.hpp"
 
 namespace palpate::run {
 namespace {
+
+/// Another device with two buttons, whose motors are warm after a moment.
+class SoonWarm final : public Device {
+  public:
+    explicit SoonWarm(std::unique_ptr<Device> device) : device_(std::move(device)) {}
+
+    DeviceInfo info() const override {
+        DeviceInfo info = device_->info();
+        info.buttons = 2;
+        info.limits.continuous_force = 0.05;
+        return info;
+    }
+    DeviceReading read(double time) override { return device_->read(time); }
+    void write(const Wrench& wrench, double time) override { device_->write(wrench, time); }
+    void stop() noexcept override { device_->stop(); }
+
+  private:
+    const std::unique_ptr<Device> device_;
+};
+
+Setup soon_warm(const std::string& depth) {
+    Setup setup = test::with_device("simulated:hand=hold,seconds=60,depth=" + depth);
+    setup.open_device = [](const auto& choice, const auto& scene) {
+        return std::make_unique<SoonWarm>(devices::open_device(choice, scene));
+    };
+    return setup;
+}
+
+/// The greatest force [N] in the next ten seconds.
+double most_force(Run& live) {
+    double most = 0;
+    for (int i = 0; i < 10'000; ++i) {
+        live.step();
+        most = std::max(most, live.snapshot()->session.tick.force.norm());
+    }
+    return most;
+}
+
+TEST(StartAs, keeps_motors_warm_that_have_other_options_now) {
+    const auto data = test::stepped_data(test::loaded("synthetic:sphere:32x32x32"));
+    run::Run before(data, soon_warm("5"));
+    before.start();
+    EXPECT_GT(most_force(before), 0.4) << "they were cold";
+    EXPECT_LT(before.snapshot()->session.tick.force.norm(), 0.1);
+    run::Run next(data, soon_warm("6"));
+    next.start_as(before);
+    EXPECT_LT(most_force(next), 0.2);
+    next.use_device(devices::parse_device("simulated:hand=hold,seconds=60,depth=7"));
+    EXPECT_LT(most_force(next), 0.2);
+}
+
+TEST(StartAs, takes_over_buttons_that_were_chosen_after_it_was_made) {
+    const auto data = test::stepped_data(test::loaded("synthetic:sphere:32x32x32"));
+    run::Run before(data, soon_warm("5"));
+    before.start();
+    run::Run next(data, soon_warm("6"));
+    run::Run without(data, test::with_device("simulated:hand=hold,depth=6,seconds=60"));
+    const Buttons chosen{UsualButton{}, Button{1}};
+    before.use_buttons(chosen);
+    EXPECT_THROW(without.start_as(before), std::invalid_argument) << "has no such button";
+    before.step();
+    next.start_as(before);
+    EXPECT_EQ(next.setup().buttons, chosen);
+    EXPECT_EQ(most_force(next), 0) << "nobody holds the dead-man switch";
+}
 
 TEST(StartAs, goes_on_with_what_was_asked_for_there_and_ends_the_run_before) {
     const auto data = test::stepped_data(test::loaded("synthetic:sphere:32x32x32"));

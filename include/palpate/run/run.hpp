@@ -56,10 +56,12 @@ class Run {
     /// no thread.
     void start();
     /// The same in place of `before`, a run on the same data whose servo ends: with all settings
-    /// requested there, lowered where this device cannot render them, and on the same field. If the
-    /// device is the same, its motors are as warm as they were, and the hand stays frozen. So a
-    /// program whose thread must not wait for a driver may construct a run on another thread, and
-    /// destroy the one before there. Throws as make_renderer(). `before` then continues.
+    /// requested there, lowered where this device cannot render them, with the same buttons and on
+    /// the same field. Motors of a device with the same name are as warm as they were. If its
+    /// options are the same, too, a frozen hand stays frozen. So a program whose thread must not
+    /// wait for a driver may construct a run on another thread, and destroy the one before there.
+    /// Throws as make_renderer(), and as use_buttons() for a button that this device does not have.
+    /// `before` then continues; if it was being recorded, the recording may have ended.
     void start_as(Run& before);
     bool started() const { return servo_ != nullptr; }  ///< also after stop()
     /// On data with Pace::by_steps, whose servo has no thread: computes one tick, a period after
@@ -133,10 +135,10 @@ class Run {
     /// Records from start() on, or from now on: the session and its force continue. Throws
     /// io::OutputError for a file that cannot be created, and if there were more edits than a
     /// recording can begin with; then nothing has changed. A recording that was running is
-    /// finished; if that fails, io::OutputError says so, but the new one runs. Throws
-    /// std::runtime_error or QueueFull, and leaves an empty recording, if the session takes no
-    /// commands. Computes a checksum of the volume first: exceptions of `progress` are passed on,
-    /// and nothing has changed.
+    /// finished; if that fails, io::OutputError says so, and if `progress` throws meanwhile, that
+    /// is passed on, but the new one runs. Throws std::runtime_error or QueueFull, and leaves an
+    /// empty recording, if the session takes no commands. Computes a checksum of the volume first:
+    /// exceptions of `progress` are passed on, and nothing has changed.
     void record(const std::filesystem::path& path, const OnProgress& progress = {});
     /// The same for several runs on the same data, into one file: they are its hands, in this order
     /// (docs/recordings.md). The file is complete when the last of them has ended its recording.
