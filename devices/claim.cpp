@@ -51,7 +51,8 @@ const void* opening_hand() {
 }
 
 Claim::Claim(std::string device, const void* hand) : device_(std::move(device)) {
-    if (opening && opening->hand_ == hand && held().is_by(hand, device_)) opening->close_();
+    const bool can_close = opening && opening->hand_ == hand && opening->close_;
+    if (can_close && held().is_by(hand, device_)) opening->close_();
     const std::lock_guard lock(held().mutex);
     number_ = ++held().last_number;
     const auto [at, is_free] = held().holders.try_emplace(device_, Holder{hand, number_});

@@ -311,6 +311,10 @@ TEST_F(Falcon, serves_one_hand_which_lets_go_of_it_before_it_is_opened_again) {
     open_by(hands[0]);
     EXPECT_THROW(open_by(hands[1]), DeviceError);
     ASSERT_TRUE(held);
+    {
+        const OpenedBy cannot_close(&hands[0], {});
+        EXPECT_THROW(open(), DeviceError);
+    }
     open_by(hands[0]);
     EXPECT_EQ(with([](auto& falcon) { return falcon.contexts; }), 1);
 }
