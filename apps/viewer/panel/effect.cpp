@@ -1,7 +1,7 @@
 // Carries out commands, and keeps their effects.
 #include "apps/viewer/panel/effect.hpp"
 
-#include <stdexcept>
+#include <exception>
 #include <utility>
 
 namespace palpate::viewer {
@@ -52,7 +52,7 @@ QString Effect::refusal_of(const Command& command) {
         carry_out_(command);
         session_ = std::move(next);
         awaited_ = late_snapshots;
-    } catch (const std::invalid_argument& error) {
+    } catch (const std::exception& error) {
         return QString::fromStdString(error.what());
     }
     return {};

@@ -17,7 +17,7 @@ class Effect : public QObject {
     Q_OBJECT
 
   public:
-    /// Carries out a command, or throws std::invalid_argument, which says why not.
+    /// Carries out a command, or throws a std::exception, which says why not.
     using CarryOut = std::function<void(const Command&)>;
 
     /// Another session. Without `carry_out` a recording is played: nothing can be changed.

@@ -285,6 +285,15 @@ TEST_F(Forces, a_refused_switch_goes_back_and_says_why) {
     EXPECT_EQ(message("session_part"), "too many commands at once");
 }
 
+TEST_F(Forces, a_switch_that_cannot_be_carried_out_at_all_goes_back_and_says_why) {
+    set();
+    effect.begin(*field, 300, {}, desktop_device(), histogram,
+                 [](const Command&) { throw std::logic_error("the run has stopped"); });
+    press("forces");
+    EXPECT_TRUE(find<QPushButton>("forces")->isChecked());
+    EXPECT_EQ(message("session_part"), "the run has stopped");
+}
+
 TEST_F(Forces, what_somebody_else_asks_for_is_shown_and_refused_where_it_belongs) {
     set(unusual());
     ForceSettings force = unusual().force;
