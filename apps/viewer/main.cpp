@@ -7,6 +7,8 @@
 #include <QTimer>
 #include <clocale>
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
 
 #include "apps/options/exit_status.hpp"
 #include "apps/options/values.hpp"
@@ -73,13 +75,19 @@ int show(QApplication& application, const app::ViewOptions& options) {
         screenshot = std::make_unique<viewer::Screenshot>(
             window, QString::fromStdString(options.screenshot), options.after);
     }
-    const int status = application.exec();
-    // From now on a signal ends the wait for a slow reader, too. The force is zero.
-    for (const int s : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(s, SIG_DFL);
-    const int finished = window.finish();
-    if (stop_signal != 0) return app::fail("interrupted", app::status_of_signal(stop_signal));
-    if (screenshot && screenshot->status() != 0) return screenshot->status();
-    return status != 0 ? status : finished;
+    int status = application.exec();
+    const int finished = window.finish([] {
+        // The force is zero: from now on a signal ends the wait for a slow reader, too.
+        for (const int s : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(s, SIG_DFL);
+    });
+    if (status == 0) status = finished;
+    if (screenshot && screenshot->status() != 0) status = screenshot->status();
+    if (stop_signal != 0) status = app::fail("interrupted", app::status_of_signal(stop_signal));
+    if (!window.has_closed_devices()) {  // a driver hangs, for which the window would wait
+        std::fflush(nullptr);
+        std::_Exit(status);
+    }
+    return status;
 }
 
 }  // namespace

@@ -1,52 +1,85 @@
 // Each hand has a thread while its device may have to be waited for.
 #include "apps/viewer/model/run_closer.hpp"
 
+#include <exception>
+#include <system_error>
 #include <utility>
-
-#include "palpate/io/error.hpp"
 
 namespace palpate::viewer {
 namespace {
 
 constexpr std::chrono::milliseconds between_looks{2};
 
+/// On a thread of its own, or at once if the system gives none.
+template <class Work>
+void start(std::vector<std::jthread>& threads, const Work& work) {
+    try {
+        threads.emplace_back(work);
+    } catch (const std::system_error&) {
+        work();
+    }
+}
+
 /// work(run) for all of them at once.
 template <class Work>
-void for_each_hand(std::vector<std::unique_ptr<run::Run>>& runs, Work work) {
+void for_each_hand(std::vector<std::unique_ptr<run::Run>>& runs, const Work& work) {
     std::vector<std::jthread> threads;
-    for (auto& run : runs) threads.emplace_back([&work, &run] { work(run); });
+    for (auto& run : runs) start(threads, [&work, &run] { work(run); });
+}
+
+/// Waits so long at most. True: none is left.
+bool reaches_zero(const std::atomic<int>& count, std::chrono::milliseconds time,
+                  const std::function<void()>& wait) {
+    const auto latest = std::chrono::steady_clock::now() + time;
+    while (count > 0 && std::chrono::steady_clock::now() < latest) {
+        if (wait) wait();
+        std::this_thread::sleep_for(between_looks);
+    }
+    return count == 0;
 }
 
 }  // namespace
 
-void RunCloser::end(std::vector<std::unique_ptr<run::Run>>& runs, Ended& ended) {
-    for_each_hand(runs, [](const auto& run) { run->stop(); });
-    for (const auto& run : runs) {
-        ended.recorded = ended.recorded || run->recording();
+/// What close() was called with.
+struct RunCloser::Job {
+    std::vector<std::unique_ptr<run::Run>> runs;
+    std::function<void(const Ended&)> ended;
+    std::function<void()> closed;
+};
+
+void RunCloser::carry_out(Job& job) {
+    for_each_hand(job.runs, [](const auto& run) { run->stop(); });
+    --forces_;
+    Ended how;
+    for (const auto& run : job.runs) {
+        how.recorded = how.recorded || run->recording();
         try {
             run->stop_recording();
-        } catch (const io::OutputError& error) {
-            ended.lost = error.what();
+        } catch (const std::exception& error) {
+            how.lost = error.what();
         }
-        if (ended.unanswered.empty()) ended.unanswered = run->unanswered();
+        if (how.unanswered.empty()) how.unanswered = run->unanswered();
     }
+    if (job.ended) job.ended(how);
+    --recording_;
+    for_each_hand(job.runs, [](auto& run) { run.reset(); });
+    if (job.closed) job.closed();
+    --open_;
 }
 
 void RunCloser::close(std::vector<std::unique_ptr<run::Run>> runs,
                       std::function<void(const Ended&)> ended, std::function<void()> closed) {
+    const std::lock_guard lock(mutex_);
     if (open_ == 0) threads_.clear();
     ++open_;
     ++recording_;
-    threads_.emplace_back([this, runs = std::move(runs), ended = std::move(ended),
-                           closed = std::move(closed)]() mutable {
-        Ended how;
-        end(runs, how);
-        ended(how);
-        --recording_;
-        for_each_hand(runs, [](auto& run) { run.reset(); });
-        if (closed) closed();
-        --open_;
-    });
+    ++forces_;
+    const auto job = std::make_shared<Job>(std::move(runs), std::move(ended), std::move(closed));
+    start(threads_, [this, job] { carry_out(*job); });
+}
+
+bool RunCloser::forces_end_within(std::chrono::milliseconds time) const {
+    return reaches_zero(forces_, time, {});
 }
 
 void RunCloser::wait_for_recordings() const {
@@ -55,12 +88,7 @@ void RunCloser::wait_for_recordings() const {
 
 bool RunCloser::closes_within(std::chrono::milliseconds time,
                               const std::function<void()>& wait) const {
-    const auto latest = std::chrono::steady_clock::now() + time;
-    while (open_ > 0 && std::chrono::steady_clock::now() < latest) {
-        if (wait) wait();
-        std::this_thread::sleep_for(between_looks);
-    }
-    return open_ == 0;
+    return reaches_zero(open_, time, wait);
 }
 
 }  // namespace palpate::viewer

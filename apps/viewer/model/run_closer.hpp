@@ -5,6 +5,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
@@ -25,10 +26,12 @@ class RunCloser {
     };
 
     /// Forces go to zero at once, recordings are completed, and devices closed. `ended` is called
-    /// from a thread before devices are closed, `closed` after that.
-    void close(std::vector<std::unique_ptr<run::Run>> runs, std::function<void(const Ended&)> ended,
-               std::function<void()> closed = {});
+    /// from a thread before devices are closed, `closed` after that; both may be empty. Any thread.
+    void close(std::vector<std::unique_ptr<run::Run>> runs,
+               std::function<void(const Ended&)> ended = {}, std::function<void()> closed = {});
 
+    /// Waits so long at most until all forces have ended, as run::Run::stop().
+    bool forces_end_within(std::chrono::milliseconds time) const;
     /// Waits until all recordings have ended.
     void wait_for_recordings() const;
     /// Waits so long at most until all devices are closed. Any thread. `wait` is called meanwhile,
@@ -37,9 +40,12 @@ class RunCloser {
                        const std::function<void()>& wait = {}) const;
 
   private:
-    static void end(std::vector<std::unique_ptr<run::Run>>& runs, Ended& ended);
+    struct Job;
+    void carry_out(Job& job);
 
-    std::atomic<int> open_{0}, recording_{0};  // times close() was called whose runs are so still
+    // Calls of close() whose runs still have a force, a recording, a device.
+    std::atomic<int> forces_{0}, recording_{0}, open_{0};
+    std::mutex mutex_;
     std::vector<std::jthread> threads_;
 };
 

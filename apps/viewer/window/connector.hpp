@@ -14,7 +14,7 @@
 namespace palpate::viewer {
 
 /// A driver that does not answer delays its device, not the window. Only one task at a time: the
-/// next one ends it.
+/// next one ends it, and so does the end of the run.
 class Connector : public Controller {
     Q_OBJECT
 
@@ -36,8 +36,11 @@ class Connector : public Controller {
     BackgroundTask& task() { return task_; }
 
   private:
+    struct Hands;
     struct Change;
+    void open(const std::shared_ptr<Change>& change, const io::Progress& progress);
     void take_away(const std::shared_ptr<Change>& change, const io::Progress& progress);
+    void tell_given_up(const Change& change);
     void tell_ended(const RunCloser::Ended& how);
 
     BackgroundTask task_;

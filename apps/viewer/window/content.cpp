@@ -65,14 +65,17 @@ void Content::begin_effect() {
 }
 
 LiveHand LiveHand::with(std::shared_ptr<run::Data> data, run::Setup setup,
-                        std::shared_ptr<const int> key, std::function<void()> close,
+                        std::shared_ptr<const HandKey> key, std::function<void()> close,
                         const OnProgress& progress) {
-    setup.open_device = [open = setup.open_device, key, close = std::move(close)](
-                            const auto& choice, const auto& scene) {
-        const devices::OpenedBy opened_by(key.get(), close);
+    // The run keeps its setup, but `close` is only for now.
+    const auto close_now = std::make_shared<std::function<void()>>(std::move(close));
+    setup.open_device = [open = setup.open_device, key, close_now](const auto& choice,
+                                                                   const auto& scene) {
+        const devices::OpenedBy opened_by(key.get(), *close_now);
         return open(choice, scene);
     };
     auto run = std::make_unique<run::Run>(std::move(data), setup, progress);
+    *close_now = nullptr;
     return {std::move(key), std::move(run)};
 }
 
@@ -86,7 +89,7 @@ std::vector<LiveHand> make_hands(const Opened& volume, const std::vector<run::Se
     return hands;
 }
 
-void Content::start_run(std::shared_ptr<Opened> volume, std::vector<LiveHand> hands) {
+void Content::start_run(std::shared_ptr<Opened> volume, std::vector<LiveHand>&& hands) {
     close();
     for (const LiveHand& hand : hands) hand.run->start();
     data_ = hands.front().run->shared_data();
@@ -129,17 +132,24 @@ run::Setup Content::setup_with(const devices::DeviceChoice& device) const {
     return setup;
 }
 
-void Content::add_hand(LiveHand hand) {
+void Content::add_hand(LiveHand&& hand) {
     if (!live() || hands() == most_hands) return;
     hand.run->start();
+    // They may have been changed since this hand was asked for.
+    const Field& field = live(1)->field();
+    if (hand.run->field().solid() != field.solid() ||
+        hand.run->field().interpolation() != field.interpolation()) {
+        hand.run->use_field(field.solid(), field.interpolation(), field.background());
+    }
+    const run::Buttons& buttons = live(1)->setup().buttons;
+    if (hand.run->setup().buttons != buttons) hand.run->use_buttons(buttons);
     hands_.push_back(std::move(hand));
     choose_hand(hands());
     Q_EMIT device_changed();
 }
 
-void Content::replace_hand(LiveHand next, std::function<void()> closed) {
-    const auto same = [&](const LiveHand& hand) { return hand.key == next.key; };
-    const auto at = std::ranges::find_if(hands_, same);
+void Content::replace_hand(LiveHand&& next, std::function<void()> closed) {
+    const auto at = std::ranges::find(hands_, next.key, &LiveHand::key);
     if (at == hands_.end()) {
         if (closed) closed();
         return;

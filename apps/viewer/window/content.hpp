@@ -39,22 +39,25 @@ struct RunRequest {
     void use_devices_of(const RunRequest& other);
 };
 
+/// Its address is that of one hand.
+struct HandKey {};
+
 /// A hand of a live run.
 struct LiveHand {
     /// Opens its device, on any thread; `close` closes the one that the hand has, if that is the
     /// same. Throws as run::Run.
     static LiveHand with(std::shared_ptr<run::Data> data, run::Setup setup,
-                         std::shared_ptr<const int> key, std::function<void()> close,
+                         std::shared_ptr<const HandKey> key, std::function<void()> close,
                          const OnProgress& progress = {});
 
-    std::shared_ptr<const int> key;  ///< by which devices know the hand that they serve
+    std::shared_ptr<const HandKey> key;  ///< by which devices know the hand that they serve
     std::unique_ptr<run::Run> run;
 };
 /// For a new hand.
-inline std::shared_ptr<const int> new_key() {
-    return std::make_shared<const int>(0);
+inline std::shared_ptr<const HandKey> new_key() {
+    return std::make_shared<const HandKey>();
 }
-/// The hands of a volume, not started. The same.
+/// The hands of a volume, not started. On any thread; throws as run::Run.
 std::vector<LiveHand> make_hands(const Opened& volume, const std::vector<run::Setup>& setups,
                                  const OnProgress& progress = {});
 
@@ -63,8 +66,9 @@ class Content : public QObject {
 
   public:
     explicit Content(RunRequest request = {});
-    /// Closes what was open first, and starts these hands.
-    void start_run(std::shared_ptr<Opened> volume, std::vector<LiveHand> hands);
+    /// Closes what was open first, and starts these hands. If they cannot be started, the caller
+    /// still has them.
+    void start_run(std::shared_ptr<Opened> volume, std::vector<LiveHand>&& hands);
     void start_playback(std::shared_ptr<Opened> volume, std::vector<Playback> hands);
     /// Devices and recordings are closed on another thread: closer().
     void close();
@@ -81,18 +85,23 @@ class Content : public QObject {
     /// For a hand that feels with another device what the chosen one began with, at the level that
     /// it feels now.
     run::Setup setup_with(const devices::DeviceChoice& device) const;
-    /// One more beside that of a live run. It is chosen.
-    void add_hand(LiveHand hand);
+    /// One more beside that of a live run, with the same buttons on the same field. It is chosen.
+    /// If it cannot be added, the caller still has it. Throws as run::Run::use_buttons.
+    void add_hand(LiveHand&& hand);
     /// Goes on with this hand in place of the one with the same key, which ends, as
     /// run::Run::start_as(). `closed`, from any thread, once its device is closed, or at once where
-    /// there is no such hand any more.
-    void replace_hand(LiveHand next, std::function<void()> closed = {});
-    const std::shared_ptr<const int>& key() const { return hands_[index(hand_)].key; }
+    /// there is no such hand any more: then, and if it throws, the caller still has `next`.
+    void replace_hand(LiveHand&& next, std::function<void()> closed = {});
+    const std::shared_ptr<const HandKey>& key() const { return hands_[index(hand_)].key; }
+    /// A hand of the live run has this key.
+    bool has_hand(const std::shared_ptr<const HandKey>& key) const {
+        return std::ranges::find(hands_, key, &LiveHand::key) != hands_.end();
+    }
     /// The chosen one, of two: its force ends.
     void remove_hand();
-    /// Ends the run, forces are zero; emits nothing.
+    /// Ends the run; emits nothing. Forces go to zero on threads of closer().
     void end_run();
-    const RunCloser& closer() const { return closer_; }
+    RunCloser& closer() { return closer_; }
 
     /// With the devices and buttons in use.
     RunRequest& request();

@@ -21,8 +21,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
-#include <cstdlib>
 #include <utility>
 
 #include "apps/viewer/model/hands.hpp"
@@ -372,6 +370,7 @@ void MainWindow::end() {
     const bool edits = saver_.unsaved() != nullptr;
     const std::shared_ptr<run::Data> felt = content_.data();
     content_.end_run();  // forces first
+    panel_->device_controls().connector().task().abandon();
     if (edits) rescue_edits(*felt);
     QApplication::exit(0);
 }
@@ -388,18 +387,19 @@ void MainWindow::closeEvent(QCloseEvent* event) {
     }
     timer_.stop();
     content_.end_run();
+    panel_->device_controls().connector().task().abandon();
     event->accept();
 }
 
-int MainWindow::finish() {
+int MainWindow::finish(const std::function<void()>& forces_ended) {
     constexpr std::chrono::seconds patience{2};
+    content_.closer().forces_end_within(patience);
+    if (forces_ended) forces_ended();
     content_.closer().wait_for_recordings();
     QCoreApplication::sendPostedEvents(&content_, QEvent::MetaCall);  // tells what went wrong
-    if (!content_.closer().closes_within(patience)) {
-        std::fflush(nullptr);
-        std::_Exit(app::no_device);
-    }
-    return recordings_.exit_status();
+    const bool hangs = !content_.closer().closes_within(patience);
+    const int lost = recordings_.exit_status();
+    return lost == app::done && hangs ? app::no_device : lost;
 }
 
 void MainWindow::keyPressEvent(QKeyEvent* event) {

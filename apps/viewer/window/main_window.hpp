@@ -5,6 +5,8 @@
 #include <QMainWindow>
 #include <QTimer>
 
+#include <functional>
+
 #include "apps/viewer/scene/render_request.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/detail_controller.hpp"
@@ -36,14 +38,17 @@ class MainWindow : public QMainWindow {
     /// `request`: the command line's, for the runs to come. `make_painter`: as of Scene. Opens
     /// nothing yet.
     explicit MainWindow(const RunRequest& request, MakePainter make_painter = &make_render_thread);
-    /// Ends the live run: forces are zero.
+    /// Ends the live run.
     ~MainWindow() override;
-    /// The same, and ends the program. Unsaved edits are rescued: rescue_edits().
+    /// Begins to end the forces, and ends the event loop. Unsaved edits are rescued:
+    /// rescue_edits().
     void end();
-    /// After the window was closed: waits until a recording is complete and the devices are closed.
-    /// Returns the exit status: other than 0 if a recording was lost. If a driver hangs, the
-    /// program ends here.
-    int finish();
+    /// After the window was closed: waits until forces have ended, calls `forces_ended`, and waits
+    /// until a recording is complete and the devices are closed. Returns the exit status: other
+    /// than 0 if a recording was lost, or if a driver hangs. Only then are devices still open,
+    /// has_closed_devices(), and the destructor would wait for the driver.
+    int finish(const std::function<void()>& forces_ended = {});
+    bool has_closed_devices() { return content_.closer().closes_within({}); }
 
     FileController& files() { return files_; }
     RecordingController& recordings() { return recordings_; }

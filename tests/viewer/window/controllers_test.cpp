@@ -12,6 +12,7 @@
 #include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/stroke_plot.hpp"
 #include "apps/viewer/panel/timeline.hpp"
+#include "apps/viewer/window/brush_controls.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/menus.hpp"
 #include "apps/viewer/window/messages.hpp"

@@ -1,9 +1,11 @@
 // Drivers that do not answer and readers that are slow: the window goes on.
 #include <sys/stat.h>
+#include <QComboBox>
 #include <QLabel>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <mutex>
@@ -24,10 +26,14 @@ class Gate {
   public:
     void close() { set(false); }
     void open() { set(true); }
-    void pass() {
+    /// `progress` is called meanwhile, and may throw.
+    void pass(const OnProgress& progress = {}) {
         std::unique_lock lock(mutex_);
         if (!is_open_) ++waiting_;
-        changed_.wait_for(lock, std::chrono::seconds(20), [this] { return is_open_; });
+        for (int looks = 0; !is_open_ && looks < 10'000; ++looks) {
+            changed_.wait_for(lock, std::chrono::milliseconds(2));
+            if (progress) progress(0);
+        }
     }
     /// Calls that have been held up.
     int waiting() const { return waiting_; }
@@ -46,7 +52,7 @@ class Gate {
 
 /// Where a driver can hang.
 struct Driver {
-    Gate opens, reads, closes;
+    Gate opens, reads, stops, closes;
     std::atomic<bool> keeps_force{false};
     std::atomic<int> open{0}, opened{0};  // now; ever
 };
@@ -58,7 +64,7 @@ class Driven final : public Device {
         : driver_(driver),
           claim_("the one device"),
           device_(devices::open_device(devices::parse_device("simulated:hand=hold"), scene)) {
-        driver_.opens.pass();
+        driver_.opens.pass(scene.progress);
         ++driver_.open;
         ++driver_.opened;
     }
@@ -66,13 +72,20 @@ class Driven final : public Device {
         driver_.closes.pass();
         --driver_.open;
     }
-    DeviceInfo info() const override { return device_->info(); }
+    DeviceInfo info() const override {
+        DeviceInfo info = device_->info();
+        info.buttons = 2;
+        return info;
+    }
     DeviceReading read(double time) override {
         driver_.reads.pass();
         return device_->read(time);
     }
     void write(const Wrench& wrench, double time) override { device_->write(wrench, time); }
-    void stop() noexcept override { device_->stop(); }
+    void stop() noexcept override {
+        driver_.stops.pass();
+        device_->stop();
+    }
     bool is_stopping() const noexcept override { return driver_.keeps_force; }
 
   private:
@@ -84,7 +97,9 @@ class Driven final : public Device {
 class SlowDevices : public InWindow {
   protected:
     void TearDown() override {
-        for (Gate* gate : {&driver_.opens, &driver_.reads, &driver_.closes}) gate->open();
+        for (Gate* gate : {&driver_.opens, &driver_.reads, &driver_.stops, &driver_.closes}) {
+            gate->open();
+        }
         InWindow::TearDown();
     }
     /// The device "haply" is the driver's.
@@ -116,6 +131,14 @@ class SlowDevices : public InWindow {
         press(Qt::Key_F);
     }
     void connect(const char* device) { connector().use_device(devices::parse_device(device)); }
+    /// The device answers late: until then it is being connected.
+    void begin_to(void (Connector::*open)(const devices::DeviceChoice&), const char* device) {
+        driver_.opens.close();
+        const int before = driver_.opens.waiting();
+        (connector().*open)(devices::parse_device(device));
+        wait_until([&] { return driver_.opens.waiting() > before; });
+    }
+    void choose(const char* box, Qt::Key key) { QTest::keyClick(&on_page<QComboBox>(box), key); }
 
     Driver driver_;
 };
@@ -221,6 +244,121 @@ TEST_F(SlowDevices, go_on_as_they_were_if_their_options_are_refused) {
     wait_until([&] { return now().session.device.status == DeviceStatus::ready; });
 }
 
+TEST_F(SlowDevices, have_the_buttons_that_were_chosen_while_they_were_connected) {
+    feel_with("haply");
+    begin_to(&Connector::use_device, "haply:port=2");
+    choose("deadman_button", Qt::Key_Down);
+    const run::Buttons chosen{run::UsualButton{}, run::Button{1}};
+    EXPECT_EQ(window_->live()->setup().buttons, chosen);
+    driver_.opens.open();
+    wait_until([&] { return used() == "haply:port=2"; });
+    EXPECT_EQ(window_->live()->setup().buttons, chosen);
+    record("with-button.csv");
+    wait_for_ticks(5);
+    window_->recordings().stop();
+    std::ifstream file(scratch("with-button.csv").toStdString());
+    const std::string text(std::istreambuf_iterator<char>(file), {});
+    EXPECT_NE(text.find("\"deadman_buttons\": 1,"), std::string::npos);
+    // Also where it goes on as it was.
+    use_device("haply:wrong=1");
+    EXPECT_EQ(window_->live()->setup().buttons, chosen);
+}
+
+TEST_F(SlowDevices, that_are_added_feel_as_the_first_hand_does_by_then) {
+    feel_with("simulated:hand=hold");
+    begin_to(&Connector::add_hand, "haply");
+    const Solid side =
+        window_->live()->field().solid() == Solid::above ? Solid::below : Solid::above;
+    window_->content().use_field(side, Interpolation::linear);
+    window_->content().use_buttons({{}, {}});
+    driver_.opens.open();
+    wait_until([&] { return window_->content().hands() == 2; });
+    const run::Run& added = *window_->content().live(2);
+    EXPECT_EQ(added.field().solid(), side);
+    EXPECT_EQ(added.field().interpolation(), Interpolation::linear);
+    EXPECT_EQ(added.field().background(), window_->content().live(1)->field().background());
+    EXPECT_EQ(added.setup().buttons, (run::Buttons{{}, {}}));
+}
+
+TEST_F(SlowDevices, are_not_waited_for_by_what_is_opened_instead) {
+    feel_with("simulated:hand=hold");
+    record("a.csv");
+    wait_for_ticks(50);
+    window_->recordings().stop();
+    for (const auto open : {&Connector::use_device, &Connector::add_hand}) {
+        begin_to(open, "haply");
+        window_->files().open_recording(scratch("a.csv"));
+        wait_until([&] { return window_->playback() != nullptr; });
+        EXPECT_FALSE(connector().task().busy());
+        driver_.opens.open();
+        handle_events();
+        EXPECT_NE(window_->playback(), nullptr);
+        feel(felt_slowly);
+    }
+}
+
+TEST_F(SlowDevices, that_nobody_wants_any_more_are_closed_beside_the_window) {
+    feel_with("mouse");
+    add_hand("simulated:hand=hold");
+    driver_.opens.close();
+    driver_.closes.close();
+    connect("haply");
+    wait_until([&] { return driver_.opens.waiting() == 1; });
+    window_->content().remove_hand();
+    driver_.opens.open();
+    wait_until([&] { return driver_.closes.waiting() == 1; });
+    wait_until_connected();
+    expect_it_answers();
+    EXPECT_EQ(driver_.open, 1);
+    EXPECT_EQ(used(), "mouse");
+    driver_.closes.open();
+    wait_until([&] { return driver_.open == 0; });
+}
+
+TEST_F(SlowDevices, that_are_given_up_after_they_were_closed_are_named) {
+    feel_with("haply");
+    begin_to(&Connector::use_device, "haply:port=2");
+    connector().task().cancel();
+    viewer::wait_until([&] { return !window_->messages().problem().isEmpty(); });
+    EXPECT_TRUE(window_->messages().problem().contains("choose it once more"));
+    driver_.opens.open();
+    use_device("haply");
+    wait_until([&] { return now().session.device.status == DeviceStatus::ready; });
+}
+
+TEST_F(SlowDevices, keep_signals_handled_until_their_forces_have_ended) {
+    feel_with("haply");
+    driver_.stops.close();
+    window_->end();
+    viewer::wait_until([&] { return driver_.stops.waiting() > 0; });
+    EXPECT_FALSE(window_->content().closer().forces_end_within({}));
+    driver_.stops.open();
+    bool has_told = false;
+    EXPECT_EQ(window_->finish([&] {
+        EXPECT_TRUE(window_->content().closer().forces_end_within({}));
+        has_told = true;
+    }),
+              0);
+    EXPECT_TRUE(has_told);
+}
+
+TEST_F(SlowDevices, that_hang_when_they_are_closed_are_told_by_the_exit_status) {
+    feel_with("haply");
+    driver_.closes.close();
+    window_->close();
+    EXPECT_EQ(window_->finish(), app::no_device);
+    EXPECT_FALSE(window_->has_closed_devices());
+}
+
+TEST_F(SlowDevices, do_not_begin_again_in_a_window_that_was_closed) {
+    feel_with("mouse");
+    begin_to(&Connector::use_device, "haply");
+    window_->close();
+    EXPECT_FALSE(connector().task().busy());
+    EXPECT_EQ(window_->finish(), 0);
+    EXPECT_EQ(window_->live(), nullptr);
+}
+
 /// Reads a pipe slowly: only its first line, until it may read on.
 class SlowReader {
   public:
@@ -258,6 +396,27 @@ TEST_F(SlowDevices, a_slow_reader_of_a_recording_does_not_keep_the_window_open) 
     EXPECT_EQ(window_->finish(), 0);
     reader.join();
     EXPECT_NE(reader.text.find("\n# end "), std::string::npos) << "the recording is complete";
+}
+
+TEST_F(SlowDevices, a_reader_that_is_given_up_does_not_keep_the_next_recording_from_its_ticks) {
+    feel_with("simulated:hand=hold");
+    const std::string pipe = scratch("pipe").toStdString();
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    SlowReader reader(pipe);
+    record("pipe");
+    wait_for_ticks(600);  // more than a pipe holds
+    struct GivenUp {};
+    const std::string next = scratch("next.csv").toStdString();
+    run::Run& live = *window_->content().live();
+    EXPECT_THROW(live.record(next,
+                             [&](double) {
+                                 if (std::filesystem::exists(next)) throw GivenUp{};
+                             }),
+                 GivenUp);
+    wait_for_ticks(5);
+    EXPECT_GT(live.stop_recording(), 0);
+    reader.gate.open();
+    reader.join();
 }
 
 }  // namespace
