@@ -55,13 +55,13 @@ class Run {
     /// Starts the servo. Throws WrongState the second time, std::system_error if the system gives
     /// no thread.
     void start();
-    /// The same in place of `before`, a run on the same data whose servo ends: with all settings
-    /// requested there, lowered where this device cannot render them, with the same buttons and on
-    /// the same field. Motors of a device with the same name are as warm as they were. If its
-    /// options are the same, too, a frozen hand stays frozen. So a program whose thread must not
-    /// wait for a driver may construct a run on another thread, and destroy the one before there.
-    /// Throws as make_renderer(), and as use_buttons() for a button that this device does not have.
-    /// `before` then continues; if it was being recorded, the recording may have ended.
+    /// The same in place of `before`, a run on the same data, whose servo ends. All settings
+    /// requested there count, lowered where this device cannot render them. The buttons and the
+    /// field are also the same. Motors of a device with the same name are as warm as they were. If
+    /// its options are the same, too, a frozen hand stays frozen. So a program whose thread must
+    /// not wait for a driver may construct a run on another thread, and destroy the one before
+    /// there. Throws as make_renderer(), and as use_buttons() for a button that this device does
+    /// not have. `before` then continues. If it was being recorded, the recording may have ended.
     void start_as(Run& before);
     bool started() const { return servo_ != nullptr; }  ///< also after stop()
     /// On data with Pace::by_steps, whose servo has no thread: computes one tick, a period after
