@@ -71,7 +71,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"info synthetic:noise ---", "there is no option --- (see palpate info"},
         Case{"info synthetic:noise --time-step 1 --time-step 2", "it is given more than once"},
         Case{"info", "VOLUME is required"},
-        Case{"info --fast", "no option --fast (see palpate info"},
+        Case{"info --purple", "no option --purple (see palpate info"},
         Case{"info synthetic:noise:4x4x4 --fast 3", "palpate info --help"},
         Case{"info synthetic:noise --isovalu 3", "--isovalu: --isovalue is an option of "},
         Case{"info synthetic:noise:4x4x4 second", "'second' is one argument too many"},

@@ -251,7 +251,7 @@ TEST(Zarr, impossible_metadata_are_refused_with_what_is_wrong) {
              {"do not agree", R"("chunks":[4,4,4])", R"("chunks":[4,4])"},
              {"store it as integers", "|u1", "<c8"},
              {"codec 'bz2' is not read", R"("compressor":null)", R"("compressor":{"id":"bz2"})"},
-             {"codec 'delta' is not read", R"("filters":null)", R"("filters":[{"id":"delta"}])"},
+             {"filter 'delta' is not read", R"("filters":null)", R"("filters":[{"id":"delta"}])"},
              {"order", R"("order":"C")", R"("order":"Z")"},
              {"is not JSON", "{", "{{"},
              {"lack what they need", R"("chunks":)", R"("chunk":)"}}) {
