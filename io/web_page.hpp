@@ -10,7 +10,7 @@ namespace palpate::io {
 /// So many bytes of a file are enough for is_web_page().
 inline constexpr std::size_t web_page_start = 1024;
 
-inline constexpr const char* is_web_page_message =
+inline constexpr const char* web_page_message =
     "is a web page (perhaps the login or error page of a server), not the file; download it again";
 
 /// Whether a file begins as a web page: HTML after a byte order mark, blanks, comments or an XML

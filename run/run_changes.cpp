@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "devices/absent_device.hpp"
 #include "devices/claim.hpp"
 #include "io/system/number.hpp"
 #include "palpate/run/run.hpp"
@@ -22,24 +23,6 @@ Field seen(const Field& field) {
     return Field(flattened(field.samples()), field.solid(), field.background(),
                  field.interpolation());
 }
-
-/// In place of a device that was closed and could not be opened again.
-class Gone final : public Device {
-  public:
-    Gone(DeviceInfo info, const std::string& why)
-        : info_(std::move(info)),
-          problem_("it could not be opened again (" + why + "): choose it once more") {}
-
-    DeviceInfo info() const override { return info_; }
-    std::string problem() const override { return problem_; }
-    DeviceReading read(double) override { return {.status = DeviceStatus::lost}; }
-    void write(const Wrench&, double) override {}
-    void stop() noexcept override {}
-
-  private:
-    const DeviceInfo info_;
-    const std::string problem_;
-};
 
 /// The same device with other options, or another one of the same kind, whose motors then count as
 /// warmer than they are for a minute or so.
@@ -158,7 +141,9 @@ void Run::reopen(double isovalue, const DeviceInfo& old) {
     try {
         hold(open_for(setup_, isovalue));
     } catch (const std::exception& error) {
-        hold(std::make_unique<Gone>(old, error.what()));
+        hold(std::make_unique<devices::AbsentDevice>(old, "it could not be opened again (" +
+                                                              std::string(error.what()) +
+                                                              "): choose it once more"));
     }
     launch(session_stopped());
     if (frozen) send(command::Freeze{true});

@@ -10,12 +10,11 @@
 
 namespace palpate::io {
 
-/// Takes corners in a plane, counterclockwise. Corners may lie on edges and at one place, as where
-/// an outline leads to a hole and back.
+using Triangles = std::vector<std::array<std::size_t, 3>>;  ///< indices of corners
+
+/// What is left of a polygon while its ears are clipped.
 class EarClip {
   public:
-    using Triangles = std::vector<std::array<std::size_t, 3>>;  ///< indices of corners
-
     explicit EarClip(std::vector<Eigen::Vector2d> corners)
         : at_(std::move(corners)), before_(at_.size()), after_(at_.size()) {
         for (std::size_t i = 0; i < at_.size(); ++i) {
@@ -24,9 +23,7 @@ class EarClip {
         }
     }
 
-    /// Those that were found before none was left, or before none could be clipped: then the
-    /// polygon crosses itself.
-    Triangles triangles() {
+    Triangles clip() {
         Triangles found;
         std::size_t left = at_.size(), looked_at = 0;  // since something was clipped
         for (std::size_t i = 0; left > 2 && looked_at < left;) {
@@ -78,5 +75,11 @@ class EarClip {
     std::vector<Eigen::Vector2d> at_;
     std::vector<std::size_t> before_, after_;
 };
+
+/// Of corners in a plane, counterclockwise. Corners may lie on edges and at one place, as where an
+/// outline leads to a hole and back. Of a polygon that crosses itself, a part may be missing.
+inline Triangles clipped_ears(std::vector<Eigen::Vector2d> corners) {
+    return EarClip(std::move(corners)).clip();
+}
 
 }  // namespace palpate::io

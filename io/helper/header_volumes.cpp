@@ -68,7 +68,7 @@ void check_kind(const std::filesystem::path& file) {
     for (const auto& [begin, what] : kinds) {
         if (text.starts_with(begin)) throw Failure(std::string(what));
     }
-    if (is_web_page(text)) throw Failure(is_web_page_message);
+    if (is_web_page(text)) throw Failure(web_page_message);
 }
 
 VolumeHeader header_of(const Request& request) {

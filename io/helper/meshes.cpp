@@ -246,8 +246,6 @@ void check_finite(vtkPolyData& mesh) {
     }
 }
 
-using Triangles = EarClip::Triangles;
-
 /// A face without corners at the place of the one before, for which VTK drops it.
 struct Face {
     std::vector<vtkIdType> ids;
@@ -309,7 +307,7 @@ Triangles divided_by_ears(const Face& face) {
         const Vec3 from_first = corner - face.corners[0];
         corners.emplace_back(from_first.dot(right), from_first.dot(up));
     }
-    return EarClip(std::move(corners)).triangles();
+    return clipped_ears(std::move(corners));
 }
 
 /// Those of VTK, unless it fails, as it does on many outlines that are not convex. Nothing of a

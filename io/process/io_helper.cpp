@@ -31,7 +31,7 @@ void check_content(const fs::path& path) {
                          ": has only the address of its data (git-annex, DataLad); run git annex "
                          "get or datalad get");
     }
-    if (is_web_page(start)) throw InputError(name + ": " + is_web_page_message);
+    if (is_web_page(start)) throw InputError(name + ": " + web_page_message);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "apps/viewer/scene/threads.hpp"
+#include "devices/absent_device.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -14,23 +15,9 @@ namespace {
 /// For devices of runs that have ended, which may be those that are opened next.
 constexpr std::chrono::seconds patience{2};
 
+/// Of a device that is closed, to be opened again.
 constexpr const char* problem_of_away =
     "it was closed, to be opened again: if that does not happen, choose it once more";
-
-/// In place of a device that is closed, to be opened again.
-class Away final : public Device {
-  public:
-    explicit Away(DeviceInfo info) : info_(std::move(info)) {}
-
-    DeviceInfo info() const override { return info_; }
-    std::string problem() const override { return problem_of_away; }
-    DeviceReading read(double) override { return {.status = DeviceStatus::lost}; }
-    void write(const Wrench&, double) override {}
-    void stop() noexcept override {}
-
-  private:
-    const DeviceInfo info_;
-};
 
 QString connecting_words(const devices::DeviceChoice& device) {
     return Connector::tr("Connecting to %1").arg(QString::fromStdString(run::text_of(device)));
@@ -120,7 +107,7 @@ void Connector::take_away(const std::shared_ptr<Change>& change, const io::Progr
     const auto take = [this, change] {
         run::Setup setup = change->before;
         setup.open_device = [info = change->info](const auto&, const auto&) {
-            return std::make_unique<Away>(info);
+            return std::make_unique<devices::AbsentDevice>(info, problem_of_away);
         };
         Hands away(content_.closer());
         away.all.push_back(LiveHand::with(change->data, setup, change->key, {}));
