@@ -77,7 +77,7 @@ const char* help_of_level(SourceOptions::For purpose) {
             return "Level of detail of a store that is touched, 0 for the finest. A plain file is "
                    "then read while it is touched";
         case SourceOptions::For::description:
-            return "Level of detail of a store whose size and memory are told, 0 for the finest";
+            return "Level of detail of a store that is described, 0 for the finest";
         case SourceOptions::For::surfaces:
             return "Level of detail of a store that is read whole, 0 for the finest (default: an "
                    "overview)";

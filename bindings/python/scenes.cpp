@@ -71,8 +71,9 @@ void bind_scenes(py::module_& module) {
         .field("duration_s", &M::duration_s, {"[s]", ranges::not_negative})
         .field("speed_mm_s", &M::speed_mm_s, {"Never faster [mm/s].", ranges::positive})
         .field("depth_mm", &M::depth_mm, {"How deep the hand presses [mm].", ranges::not_negative})
-        .field("seed", &M::seed,
-               {"Of the start, the direction and the order of the motion.", ranges::any})
+        .field(
+            "seed", &M::seed,
+            {"Random seed of the start, the direction and the order of the motion.", ranges::any})
         .done();
     module.def("motion", &motion, py::arg("name"), py::arg("field"), py::arg("isovalue"),
                py::arg_v("settings", M{}, "MotionSettings()"),

@@ -2,6 +2,7 @@
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
 #include "bindings/python/record.hpp"
+#include "io/straightened.hpp"
 
 namespace palpate::python {
 namespace {
@@ -32,6 +33,18 @@ py::object text_of_volume(const py::object& self) {
         .format(size[0], size[1], size[2], std::string(name_of(volume.type())),
                 py::cast(volume.geometry().spacing).attr("tolist")(), volume.minimum(),
                 volume.maximum());
+}
+
+/// The nearest direction whose axes are at right angles, and how far that moves a sample [mm].
+std::optional<std::pair<Mat3, double>> straightened_turn(const Index3& size, const Vec3& spacing,
+                                                         const Mat3& direction) {
+    Geometry geometry;
+    geometry.size = size;
+    geometry.spacing = spacing;
+    geometry.direction = direction;
+    const auto nearest = io::straightened(geometry);
+    if (!nearest) return std::nullopt;
+    return std::pair(nearest->grid.direction, nearest->moved);
 }
 
 void bind_geometry(py::module_& module) {
@@ -65,6 +78,8 @@ void bind_geometry(py::module_& module) {
 
 void bind_volumes(py::module_& module) {
     bind_geometry(module);
+    module.def("_straightened", &straightened_turn, py::arg("size"), py::arg("spacing"),
+               py::arg("direction"));
     py::class_<Volume> volume(
         module, "Volume",
         "Samples on a regular grid. They do not change: edits make new versions (Editor).");

@@ -105,20 +105,6 @@ void check_spacing(double spacing, const std::string& where);
 void check_coordinate(double coordinate, const std::string& where);
 /// All of a grid: check() and these two. Throws Failure.
 void check_geometry(const Geometry& geometry);
-/// Greatest distance between the places of a corner in two grids of one size [mm].
-double distance_between(const Geometry& a, const Geometry& b);
-/// A grid whose axes are unit vectors at right angles.
-struct Straightened {
-    Geometry grid;
-    double moved = 0;  ///< greatest distance from a sample of the grid with unit vectors [mm]
-    bool is_changed = false;
-    bool is_sheared = false;  ///< or it had other lengths only
-};
-/// The nearest such grid, or nothing if that is too far: some sample would move by more than half
-/// of the smallest spacing of axes with several samples. Rounded directions and the remains of a
-/// gantry tilt are that near. The lengths of the axes' vectors do not count, as formats give the
-/// spacing apart from them. A grid that check() takes stays as it is.
-std::optional<Straightened> straightened(const Geometry& geometry);
 /// Puts in what is given instead of the file's grid, straightens the grid with a note, and checks
 /// it. Throws Failure.
 void settle_geometry(const GivenGrid& given, Geometry& geometry, std::vector<std::string>& notes);

@@ -12,6 +12,7 @@
 #include "io/byte_order.hpp"
 #include "io/helper/headers.hpp"
 #include "io/inflate.hpp"
+#include "io/straightened.hpp"
 
 namespace palpate::io {
 namespace {

@@ -20,7 +20,7 @@ constexpr auto between_writes = 100ms;
 constexpr auto between_syncs = 500ms;
 /// For the reader of a pipe that reads nothing. The queues have no room for more.
 constexpr std::chrono::seconds patience{8};
-/// For the same at the end, where nobody says how long it is waited for.
+/// The same at the end of a recording, if the caller sets no limit.
 constexpr std::chrono::milliseconds last_patience{500};
 constexpr std::size_t most_buffered = std::size_t{1} << 20;
 

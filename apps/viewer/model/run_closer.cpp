@@ -27,7 +27,7 @@ void for_each_hand(std::vector<std::unique_ptr<run::Run>>& runs, const Work& wor
     for (auto& run : runs) start(threads, [&work, &run] { work(run); });
 }
 
-/// Waits so long at most. True: none is left.
+/// Waits until none is left, at most for this time. False if some are.
 bool reaches_zero(const std::atomic<int>& count, std::chrono::milliseconds time,
                   const std::function<void()>& wait) {
     const auto latest = std::chrono::steady_clock::now() + time;

@@ -30,12 +30,13 @@ class RunCloser {
     void close(std::vector<std::unique_ptr<run::Run>> runs,
                std::function<void(const Ended&)> ended = {}, std::function<void()> closed = {});
 
-    /// Waits so long at most until all forces have ended, as run::Run::stop().
+    /// Waits until all forces have ended (run::Run::stop()), at most for this time. False if some
+    /// have not.
     bool forces_end_within(std::chrono::milliseconds time) const;
     /// Waits until all recordings have ended.
     void wait_for_recordings() const;
-    /// Waits so long at most until all devices are closed. Any thread. `wait` is called meanwhile,
-    /// every few milliseconds, and may throw.
+    /// Waits until all devices are closed, at most for this time. False if some are not. Any
+    /// thread. `wait` is called meanwhile, every few milliseconds, and may throw.
     bool closes_within(std::chrono::milliseconds time,
                        const std::function<void()>& wait = {}) const;
 

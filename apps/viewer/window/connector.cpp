@@ -23,8 +23,7 @@ QString connecting_words(const devices::DeviceChoice& device) {
     return Connector::tr("Connecting to %1").arg(QString::fromStdString(run::text_of(device)));
 }
 
-/// open(progress) for as long as that takes, which is not known. A person may have cancelled it
-/// meanwhile.
+/// The result of open(progress), which may take any time. Throws if a person has cancelled it.
 template <class Open>
 auto opened(const io::Progress& progress, const Open& open) {
     auto result = open([progress](double) { progress(0); });
@@ -52,7 +51,7 @@ struct Connector::Hands {
     std::exception_ptr error;  // why there are none, or not those that were wanted
 };
 
-/// Of the device of one hand.
+/// A change of the device of one hand.
 struct Connector::Change {
     explicit Change(RunCloser& closer) : next(closer) {}
 
@@ -71,7 +70,7 @@ Connector::Connector(const Desk& desk) : Controller(desk), task_(messages_) {
     connect(&content_, &Content::closing, &task_, &BackgroundTask::abandon);
 }
 
-/// A force that may still be on.
+/// Says so if a force may still be on.
 void Connector::tell_ended(const RunCloser::Ended& how) {
     if (!how.unanswered.empty()) messages_.show_problem(QString::fromStdString(how.unanswered));
 }

@@ -21,9 +21,9 @@ class Connector : public Controller {
   public:
     explicit Connector(const Desk& desk);
 
-    /// Closes what is open, and feels this volume. `then` runs once it is felt. Where a device
-    /// cannot be had nothing is open, and `otherwise` gets what was thrown; without it, that is
-    /// shown.
+    /// Closes what is open, and feels this volume. `then` runs once it is felt. If a device cannot
+    /// be opened, nothing is open afterwards, and `otherwise` gets the exception. Without
+    /// `otherwise`, a message shows it.
     void feel(std::shared_ptr<Opened> volume, std::vector<run::Setup> setups,
               std::function<void()> then,
               std::function<void(const std::exception_ptr&)> otherwise = {});

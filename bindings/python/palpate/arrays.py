@@ -1,13 +1,14 @@
 """Volumes from arrays of any kind, by what they can do: NumPy, nibabel, zarr, h5py, dask."""
 
 import copy
-import itertools
 import operator
 import warnings
 from typing import TYPE_CHECKING, Any, Optional
 
 import numpy
 from numpy.typing import ArrayLike
+
+from . import _palpate
 
 if TYPE_CHECKING:
     from . import Volume
@@ -103,7 +104,7 @@ def _from_nibabel(image, frame):
         raise ValueError("the image's affine has an axis of length 0")
     place = {"spacing": spacing, "origin": affine[:3, 3]}
     if placed:
-        place["direction"] = _straightened(affine[:3, :3] / spacing, spacing, shape)
+        place["direction"] = _direction_of(affine, spacing, shape)
     return samples.T, place
 
 
@@ -149,33 +150,20 @@ def _has_no_spacings(affine, given, shape):
     return numpy.abs(lengths - 1).max() <= 1e-4 and any(other)
 
 
-def _right_angles(direction, spacing, shape):
-    """The nearest direction whose axes are at right angles, and how far that moves the farthest sample [mm]. As
-    load() does it, none if that is more than half of the smallest spacing of axes with several samples."""
-    nearest = direction
-    error = numpy.abs(direction.T @ direction - numpy.eye(3)).max()
-    if error >= 1e-4:
-        left, _, right = numpy.linalg.svd(direction)
-        nearest = left @ right
-    corners = numpy.array(list(itertools.product(*((0, size - 1) for size in shape)))).T
-    moved = numpy.linalg.norm((nearest - direction) * spacing @ corners, axis=0).max()
-    least = min((step for size, step in zip(shape, spacing) if size > 1), default=numpy.inf)
-    return (nearest, moved) if error <= 0.01 and moved <= 0.5 * least else (None, moved)
-
-
 def _is_sheared(affine, shape):
     spacing = numpy.linalg.norm(affine[:3, :3], axis=0)
-    return _right_angles(affine[:3, :3] / spacing, spacing, shape)[0] is None
+    return _palpate._straightened(shape, spacing, affine[:3, :3] / spacing) is None
 
 
-def _straightened(direction, spacing, shape):
-    nearest, moved = _right_angles(direction, spacing, shape)
+def _direction_of(affine, spacing, shape):
+    nearest = _palpate._straightened(shape, spacing, affine[:3, :3] / spacing)
     if nearest is None:
-        return direction  # Volume refuses it
+        return affine[:3, :3] / spacing  # Volume refuses it
+    direction, moved = nearest
     if moved > 0:
-        _warn("the image's axes are not quite at right angles: the nearest grid that is so was taken, whose samples lie "
+        _warn("the image's axes are not quite at right angles: the nearest grid with right angles was taken, whose samples lie "
               f"up to {moved:.6g} mm from the image's")
-    return nearest
+    return direction
 
 
 def _finite(samples):
