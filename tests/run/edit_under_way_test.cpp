@@ -16,7 +16,11 @@ namespace {
 struct LongEdit {
     LoadedVolume ball;
     Field field = linear_field(ball.volume);
-    VolumeEditor editor{field.shared_samples(), Pace::by_steps};
+    // On the heap: the thread sanitizer does not notice that a mutex on the stack has ended, and
+    // takes another one at its place for the same.
+    const std::unique_ptr<VolumeEditor> owned =
+        std::make_unique<VolumeEditor>(field.shared_samples(), Pace::by_steps);
+    VolumeEditor& editor = *owned;
     support::ScriptedDevice device{[](double) { return support::ready_at({-15, 0, 0}); }};
     test::Time time;
     std::unique_ptr<Servo> servo =

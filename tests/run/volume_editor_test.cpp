@@ -341,7 +341,7 @@ TEST(VolumeEditor, edits_that_wait_for_their_turn_stop_when_asked_to) {
 struct LittleHistory {
     support::ScratchFolder folder;
     std::optional<Streamer> streamer;
-    std::optional<VolumeEditor> editor;
+    std::unique_ptr<VolumeEditor> editor;  // on the heap, as that of LongEdit
 
     /// `free` deletes the first version.
     explicit LittleHistory(const std::function<void(const Samples*)>& free) {
@@ -350,7 +350,8 @@ struct LittleHistory {
         const LoadedVolume ball = load(source_from({{"volume", path}, {"level", "0"}}));
         streamer.emplace(ball, Pace::by_steps);
         std::shared_ptr<const Samples> first(new Samples(*start_samples(ball)), free);
-        editor.emplace(std::move(first), *streamer, 480'000, Pace::by_steps);
+        editor =
+            std::make_unique<VolumeEditor>(std::move(first), *streamer, 480'000, Pace::by_steps);
     }
     void fill(double value) { editor->apply(edit::Fill{{{0, 0, 0}, {30, 30, 30}}, value}); }
 };

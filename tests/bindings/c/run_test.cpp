@@ -245,7 +245,7 @@ TEST_F(CRun, that_has_stopped_takes_no_commands_and_records_nothing) {
     ASSERT_EQ(palpate_run_stop(run_), PALPATE_OK);
     EXPECT_EQ(palpate_run_set_isovalue(run_, 90), PALPATE_WRONG_STATE);
     EXPECT_EQ(palpate_run_lift(run_), PALPATE_WRONG_STATE);
-    EXPECT_EQ(palpate_run_record(run_, (folder / "r.csv").c_str()), PALPATE_WRONG_STATE);
+    EXPECT_EQ(palpate_run_record(run_, (folder / "r.csv").string().c_str()), PALPATE_WRONG_STATE);
     EXPECT_FALSE(std::filesystem::exists(folder / "r.csv"));
     EXPECT_EQ(now().felt.isovalue, 100);
 }
