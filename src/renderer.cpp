@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "layers/stretch.hpp"
 #include "proxy/update.hpp"
 #include "reach.hpp"
 #include "tool_proxy/kept.hpp"
@@ -471,9 +472,8 @@ Tick render(Renderer& renderer, const TickInput& device, StepObserver observer, 
     if (penetrability.on && !settings.tool && !have_surfaces(settings.layers) && !waits) {
         apply_penetrability(penetrability, renderer.field, 1 / settings.transform.scale,
                             renderer.proxy, tick.proxy, observer);
-        if (layers) {
-            layers->pulls = pulls(tick.proxy);
-            layers->pull = (tick.proxy.scp - tick.proxy.hip) / settings.transform.scale;
+        if (layers && tick.proxy.status == UpdateStatus::done) {
+            stretch_again(renderer.layers.spring, tick.proxy, settings.transform.scale, *layers);
         }
     }
     const ForceResult force =
