@@ -410,10 +410,10 @@ void use_tool(Renderer& renderer, std::shared_ptr<const Tool> tool,
     if (tool && !(proxy && proxy->use(tool))) return;
     forget_layers(renderer.layers, renderer.proxy, renderer.field);
     if (tool && !settings.tool) {
+        static_cast<ToolState&>(*proxy) = {};  // what it was when it was used last does not count
         proxy->pose = {renderer.proxy.scp_physical,
                        Quaternion(settings.transform.rotation * orientation).normalized()};
         proxy->placed = renderer.proxy.placed;
-        proxy->mode = Mode::free;
     }
     if (!tool && settings.tool) {
         // The point starts where the tool was, and is brought out there if that is inside.
