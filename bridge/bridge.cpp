@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <charconv>
 #include <chrono>
+#include <cstring>
 #include <ctime>
 
 #include "bridge/sockets.hpp"
@@ -80,8 +81,8 @@ Bridge::Bridge(const Settings& settings, Pace pace) : settings_(settings), port_
     if (settings_.client) {
         is_loopback(settings_.host);  // throws for a host that there is not
     } else {
-        const Listening listening = listen_at(settings_.host, settings_.port);
-        listening_ = listening.socket;
+        Listening listening = listen_at(settings_.host, settings_.port);
+        listening_ = std::move(listening.sockets);
         port_ = listening.port;
     }
     event_ = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
@@ -103,7 +104,8 @@ Bridge::~Bridge() {
     wake();
     if (thread_.joinable()) thread_.join();
     for (const auto& peer : peers_) ::close(peer->socket);
-    for (const int socket : {listening_, connecting_, event_}) {
+    for (const int socket : listening_) ::close(socket);
+    for (const int socket : {connecting_, event_}) {
         if (socket >= 0) ::close(socket);
     }
 }
@@ -132,21 +134,23 @@ std::vector<std::string> Bridge::notes() {
     return std::exchange(notes_, {});
 }
 
-void Bridge::note(const std::string& text) noexcept {
+void Bridge::note(std::initializer_list<std::string_view> parts) noexcept {
     try {
+        std::string text = "OpenIGTLink: ";
+        for (const std::string_view part : parts) text += part;
         const std::scoped_lock lock(mutex_);
-        if (notes_.size() < most_requests) notes_.push_back("OpenIGTLink: " + text);
+        if (notes_.size() < most_requests) notes_.push_back(std::move(text));
     } catch (const std::exception&) {  // no memory for words
     }
 }
 
 /// Its memory is free at once, its socket at the end of the step.
-void Bridge::drop(Peer& peer, const std::string& why) noexcept {
+void Bridge::drop(Peer& peer, std::string_view why) noexcept {
     peer.gone = true;
     peer.reader = Reader(settings_.limits);
     peer.out = {};
     peer.sent = 0;
-    note(peer.who + " was disconnected: " + why);
+    note({peer.who, " was disconnected: ", why});
 }
 
 /// If work for one peer fails, for example for lack of memory, only that peer is disconnected.
@@ -196,12 +200,12 @@ void Bridge::send_surface(int peer, const SurfaceMesh& mesh) {
 }
 
 std::vector<pollfd> Bridge::poll(int milliseconds) const {
-    std::vector<pollfd> sockets{
-        {event_, POLLIN, 0}, {listening_, POLLIN, 0}, {connecting_, POLLOUT, 0}};
+    std::vector<pollfd> sockets{{event_, POLLIN, 0}, {connecting_, POLLOUT, 0}};
     for (const auto& peer : peers_) {
         sockets.push_back(
             {peer->socket, static_cast<short>(POLLIN | (peer->waiting() > 0 ? POLLOUT : 0)), 0});
     }
+    for (const int socket : listening_) sockets.push_back({socket, POLLIN, 0});
     ::poll(sockets.data(), sockets.size(), milliseconds);
     return sockets;
 }
@@ -213,19 +217,15 @@ void Bridge::step(Time now) {
     std::uint64_t woken = 0;
     [[maybe_unused]] const ssize_t ignored = ::read(event_, &woken, sizeof woken);
     for (std::size_t i = 0; i < peers_.size(); ++i) {
-        if (sockets[i + 3].revents & (POLLIN | POLLHUP | POLLERR)) {
+        if (sockets[i + 2].revents & (POLLIN | POLLHUP | POLLERR)) {
             serve(*peers_[i], [&] { take_from(*peers_[i]); });
         }
     }
-    if (sockets[1].revents & POLLIN) accept_peers();
-    if (sockets[2].revents != 0) {
-        const int socket = std::exchange(connecting_, -1);
-        if (is_connected(socket)) {
-            add_peer(socket, settings_.host + ":" + std::to_string(settings_.port));
-        } else {
-            ::close(socket);
-        }
+    const std::size_t first = sockets.size() - listening_.size();
+    for (std::size_t i = 0; i < listening_.size(); ++i) {
+        if (sockets[first + i].revents & POLLIN) accept_peers(listening_[i]);
     }
+    if (sockets[1].revents != 0) end_attempt(connection_error(connecting_));
     hand_out();
     drop_the_gone();
 }
@@ -234,14 +234,29 @@ void Bridge::try_to_connect() {
     if (!settings_.client || connecting_ >= 0 || !peers_.empty() || now_ < next_try_) return;
     next_try_ = now_ + between_tries;
     try {
-        connecting_ = connect_to(settings_.host, settings_.port);
+        connecting_ = connect_to(settings_.host, settings_.port, failures_);
+        if (connecting_ < 0) end_attempt(errno);
     } catch (const std::runtime_error& e) {
-        note(e.what());
+        note({e.what()});
     }
 }
 
-void Bridge::accept_peers() {
-    for (int socket = accept_from(listening_); socket >= 0; socket = accept_from(listening_)) {
+/// `error`: an errno, 0 if the server has answered. The next attempt is at the next address.
+void Bridge::end_attempt(int error) {
+    const std::string who = settings_.host + ":" + std::to_string(settings_.port);
+    const int socket = std::exchange(connecting_, -1);
+    if (error == 0) {
+        has_noted_failure_ = false;
+        return add_peer(socket, who);
+    }
+    if (socket >= 0) ::close(socket);
+    ++failures_;
+    if (std::exchange(has_noted_failure_, true)) return;
+    note({"no server answers at ", who, " (", std::strerror(error), "): trying each second"});
+}
+
+void Bridge::accept_peers(int listening) {
+    for (int socket = accept_from(listening); socket >= 0; socket = accept_from(listening)) {
         if (peers_.size() == most_peers) {  // some may have left already
             for (const auto& peer : peers_) serve(*peer, [&] { take_from(*peer); });
             drop_the_gone();
@@ -250,7 +265,7 @@ void Bridge::accept_peers() {
             add_peer(socket, "client " + std::to_string(next_peer_));
         } else {
             ::close(socket);
-            note("a client was refused: there are " + std::to_string(most_peers) + " already");
+            note({"a client was refused: there are ", std::to_string(most_peers), " already"});
         }
     }
 }
@@ -264,7 +279,7 @@ void Bridge::add_peer(int socket, const std::string& who) noexcept {
         ::close(socket);
         return;
     }
-    note(who + " is connected");
+    note({who, " is connected"});
 }
 
 void Bridge::take_from(Peer& peer) {
@@ -274,7 +289,7 @@ void Bridge::take_from(Peer& peer) {
         const ssize_t got = ::recv(peer.socket, piece.data(), piece.size(), 0);
         if (got == 0 || (got < 0 && errno != EAGAIN && errno != EINTR)) {
             peer.gone = true;
-            note(peer.who + " has left");
+            note({peer.who, " has left"});
         }
         if (got <= 0) break;
         try {
@@ -300,7 +315,7 @@ void Bridge::take(Peer& peer, const Received& received) {
             ask(peer, {peer.number, SurfaceAsked{}});
         }  // others, as programs send them unasked, are left alone
     } catch (const WireError& e) {
-        note(peer.who + " sent " + e.what());
+        note({peer.who, " sent ", e.what()});
         reply(peer.number, std::string("not taken: ") + e.what());
     } catch (const std::bad_alloc&) {
         reply(peer.number, "not taken: there is too little memory for this " + type);
@@ -349,7 +364,7 @@ void Bridge::answer(Peer& peer, const std::string& bytes) {
     const bool has_room =
         peer.waiting() < most_waiting && waiting() + bytes.size() <= settings_.limits.together;
     if (has_room) return peer.append(bytes, now_);
-    note(peer.who + " reads too slowly: an answer was left out");
+    note({peer.who, " reads too slowly: an answer was left out"});
 }
 
 void Bridge::flush(Peer& peer) const {

@@ -6,10 +6,12 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <variant>
 #include <vector>
@@ -88,11 +90,12 @@ class Bridge {
     std::vector<pollfd> poll(int milliseconds) const;
     void wake() const;
     void send(int peer, std::string_view type, const std::string& body);
-    void note(const std::string& text) noexcept;
-    void accept_peers();
+    void note(std::initializer_list<std::string_view> parts) noexcept;
+    void accept_peers(int listening);
     void try_to_connect();
+    void end_attempt(int error);
     void add_peer(int socket, const std::string& who) noexcept;
-    void drop(Peer& peer, const std::string& why) noexcept;
+    void drop(Peer& peer, std::string_view why) noexcept;
     template <class Work>
     void serve(Peer& peer, Work&& work) noexcept;
     void bound_memory();
@@ -107,7 +110,10 @@ class Bridge {
 
     Settings settings_;
     int port_ = 0;
-    int listening_ = -1, connecting_ = -1, event_ = -1;
+    std::vector<int> listening_;
+    int connecting_ = -1, event_ = -1;
+    int failures_ = 0;  // of attempts to connect
+    bool has_noted_failure_ = false;
     std::chrono::steady_clock::time_point now_, next_try_;
     std::vector<std::unique_ptr<Peer>> peers_;  // the thread's
     int next_peer_ = 1;

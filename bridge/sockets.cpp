@@ -8,9 +8,11 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <memory>
 #include <stdexcept>
+#include <vector>
 
 namespace palpate::bridge {
 namespace {
@@ -36,6 +38,33 @@ int socket_for(const addrinfo& address) {
                     address.ai_protocol);
 }
 
+/// -1, with an errno, if there can be none.
+int listening_socket(const addrinfo& address) {
+    const int socket = socket_for(address);
+    if (socket < 0) return -1;
+    const int yes = 1;
+    setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    if (::bind(socket, address.ai_addr, address.ai_addrlen) == 0 &&
+        ::listen(socket, SOMAXCONN) == 0) {
+        return socket;
+    }
+    const int error = errno;
+    ::close(socket);
+    errno = error;
+    return -1;
+}
+
+bool lacks_address(int error) {
+    return error == EADDRNOTAVAIL || error == EAFNOSUPPORT;
+}
+
+void set_port(sockaddr& address, int port) {
+    auto& its_port = address.sa_family == AF_INET6
+                         ? reinterpret_cast<sockaddr_in6&>(address).sin6_port
+                         : reinterpret_cast<sockaddr_in&>(address).sin_port;
+    its_port = htons(static_cast<std::uint16_t>(port));
+}
+
 int port_of(int socket) {
     sockaddr_storage address{};
     socklen_t size = sizeof address;
@@ -48,37 +77,47 @@ int port_of(int socket) {
 }  // namespace
 
 Listening listen_at(const std::string& host, int port) {
+    Listening listening{{}, port};
+    int error = 0;
+    // With port 0, the first address gets any port, and the others get the same one.
     const Addresses addresses = addresses_of(host, port, AI_PASSIVE);
-    const int socket = socket_for(*addresses);
-    const int yes = 1;
-    if (socket >= 0) {
-        setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-        if (::bind(socket, addresses->ai_addr, addresses->ai_addrlen) == 0 &&
-            ::listen(socket, SOMAXCONN) == 0) {
-            return {socket, port_of(socket)};
+    for (addrinfo* at = addresses.get(); at; at = at->ai_next) {
+        set_port(*at->ai_addr, listening.port);
+        const int socket = listening_socket(*at);
+        if (socket >= 0) {
+            listening.sockets.push_back(socket);
+            listening.port = port_of(socket);
+        } else if (error == 0 || !lacks_address(errno)) {
+            error = errno;
         }
     }
-    const std::string why = std::strerror(errno);
-    if (socket >= 0) ::close(socket);
+    // A machine without IPv6 may still know ::1 by name.
+    if (!listening.sockets.empty() && (error == 0 || lacks_address(error))) return listening;
+    for (const int socket : listening.sockets) ::close(socket);
     throw std::runtime_error("OpenIGTLink: cannot listen at " + host + ":" + std::to_string(port) +
-                             " (" + why + "): choose another port");
+                             " (" + std::strerror(error) + "): choose another port");
 }
 
-int connect_to(const std::string& host, int port) {
+int connect_to(const std::string& host, int port, int attempt) {
     const Addresses addresses = addresses_of(host, port, 0);
-    const int socket = socket_for(*addresses);
+    std::vector<const addrinfo*> all;
+    for (const addrinfo* at = addresses.get(); at; at = at->ai_next) all.push_back(at);
+    const addrinfo& address = *all[static_cast<std::size_t>(attempt) % all.size()];
+    const int socket = socket_for(address);
     if (socket < 0) return -1;
-    if (::connect(socket, addresses->ai_addr, addresses->ai_addrlen) == 0 || errno == EINPROGRESS) {
+    if (::connect(socket, address.ai_addr, address.ai_addrlen) == 0 || errno == EINPROGRESS) {
         return socket;
     }
+    const int error = errno;
     ::close(socket);
+    errno = error;
     return -1;
 }
 
-bool is_connected(int socket) {
+int connection_error(int socket) {
     int error = 0;
     socklen_t size = sizeof error;
-    return getsockopt(socket, SOL_SOCKET, SO_ERROR, &error, &size) == 0 && error == 0;
+    return getsockopt(socket, SOL_SOCKET, SO_ERROR, &error, &size) == 0 ? error : errno;
 }
 
 int accept_from(int listening) {

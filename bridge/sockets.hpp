@@ -2,21 +2,24 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace palpate::bridge {
 
-/// A socket that listens, and its port. Throws std::runtime_error with what is wrong.
+/// Sockets that listen, one for each address of the host, and their port. Throws
+/// std::runtime_error with what is wrong.
 struct Listening {
-    int socket;
+    std::vector<int> sockets;
     int port;
 };
 Listening listen_at(const std::string& host, int port);
 
-/// A socket that is connecting; -1 if that cannot even begin. Throws std::runtime_error for a host
-/// that there is not.
-int connect_to(const std::string& host, int port);
-/// Once it can be written to: whether it is connected.
-bool is_connected(int socket);
+/// A socket that is connecting; -1 with an errno if that cannot even begin. A host may have several
+/// addresses, which take turns: `attempt` counts from 0. Throws std::runtime_error for a host that
+/// there is not.
+int connect_to(const std::string& host, int port, int attempt = 0);
+/// Once it can be written to: 0 if it is connected, otherwise the errno that says why not.
+int connection_error(int socket);
 
 /// The next one that came, ready for use; -1 if there is none.
 int accept_from(int listening);

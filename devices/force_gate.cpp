@@ -13,11 +13,6 @@ bool is_position(const Vec3& position) noexcept {
     return position.allFinite() && position.norm() <= farthest;
 }
 
-bool is_rotation(const Mat3& m) noexcept {
-    return m.allFinite() && (m * m.transpose() - Mat3::Identity()).cwiseAbs().maxCoeff() < 1e-3 &&
-           m.determinant() > 0;
-}
-
 void ForceGate::note(bool ready, std::int64_t now) noexcept {
     if (!ready || now - noted_ > longest_gap) ready_since_.reset();
     if (ready && !ready_since_) ready_since_ = now;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
 
 #include "devices/link.hpp"
 
@@ -24,13 +25,17 @@ class LinkedDevice : public Device {
 };
 
 /// What the thread of a backend does: a step every `period` [ns] until it is to quit. Steps that
-/// are late are left out, not made up for.
+/// are late are left out, not made up for. One that throws, mostly for want of memory, is tried
+/// again.
 void keep_stepping(std::int64_t period, const Timing& timing, const std::atomic<bool>& quit,
                    auto&& step) {
     prepare_device_thread();
     std::int64_t next = timing.now();
     while (!quit) {
-        step();
+        try {
+            step();
+        } catch (const std::exception&) {
+        }
         next = std::max(next + period, timing.now());
         timing.sleep_until(next);
     }

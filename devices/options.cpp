@@ -54,8 +54,9 @@ std::string DeviceOptions::text(const std::string& key, const std::string& other
 }
 
 double DeviceOptions::number(const std::string& key, double otherwise, double low, double high) {
+    const bool is_given = rest_.contains(key);
     const std::string given = text(key, "");
-    if (given.empty()) return otherwise;
+    if (!is_given) return otherwise;
     const auto value = io::number_from<double>(given);
     if (value && *value >= low && *value <= high) return *value;
     std::string message = "device " + device_ + ": " + key + "=" + given + ": a number from ";

@@ -47,8 +47,6 @@ class VendorLibrary {
 
 /// Whether this can be a device's position [device mm]: finite, at most 10 m from its origin.
 bool is_position(const Vec3& position) noexcept;
-/// Whether this is a proper rotation, to 0.001 in every number of m m^T.
-bool is_rotation(const Mat3& m) noexcept;
 
 /// Passes a force only after the device has been ready without a break for as long as a link keeps
 /// a force, so that every force that passes was written by a servo that saw the device ready. For

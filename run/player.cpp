@@ -34,10 +34,8 @@ std::shared_ptr<const Recipe> recipe_of(const Samples& samples) {
 }  // namespace
 
 Player::Player(io::Sequence sequence, const io::LoaderSettings& settings, Pace pace)
-    : sequence_(std::move(sequence)),
-      settings_(settings),
-      loader_(std::make_unique<io::FrameLoader>(sequence_, settings_)),
-      time_(sequence_.times.front()) {
+    : sequence_(std::move(sequence)), settings_(settings), time_(sequence_.times.front()) {
+    load();
     begin(pace);
 }
 
@@ -97,7 +95,7 @@ void Player::seek(double time) {
     require_sequence();
     if (!std::isfinite(time)) throw std::invalid_argument("the time is not finite");
     const std::scoped_lock lock(mutex_);
-    loader_->retry();  // frames that could not be read may be there by now
+    if (loader_) loader_->retry();  // frames that could not be read may be there by now
     target_ = std::clamp(time, sequence_.times.front(), sequence_.times.back());
     if (settings_.loop && time > *target_) target_ = within(time);
 }
@@ -126,7 +124,12 @@ void Player::set_loop(bool on) {
     target_ = within(target_.value_or(time_));
     settings_.loop = on;
     loader_.reset();  // frees its frames first
-    loader_ = std::make_unique<io::FrameLoader>(sequence_, settings_);
+    load();
+}
+
+/// Without memory or a thread there is no loader yet: the next step tries again.
+void Player::load() {
+    if (!live_ && !loader_) loader_ = std::make_unique<io::FrameLoader>(sequence_, settings_);
 }
 
 /// A time with laps as one of the sequence.
@@ -152,7 +155,8 @@ PlayState Player::state() const {
 
 bool Player::is_settled() const {
     const std::scoped_lock lock(mutex_);
-    return !loader_ || (loader_->status().settled && loader_->newest() == sent_.samples);
+    if (live_) return true;
+    return loader_ && loader_->status().settled && loader_->newest() == sent_.samples;
 }
 
 void Player::show_live(PlayState& state) const {
@@ -177,7 +181,7 @@ void Player::show_sequence(PlayState& state) const {
     state.end = settings_.loop ? state.begin + sequence_.period : sequence_.times.back();
     state.time = within(target_.value_or(time_));
     state.loop = settings_.loop;
-    state.problem = loader_->problem();
+    if (loader_) state.problem = loader_->problem();
     if (const Samples* samples = sent_.samples.get()) {
         const bool all = samples->frames().size() >= sequence_.times.size();
         state.loaded_from = all ? state.begin : within(samples->frames().front().time);
@@ -236,6 +240,7 @@ bool Player::send_frames() {
 }
 
 void Player::update() {
+    load();
     const auto first = std::ranges::find_if(
         listeners_, [](const Listener& listener) { return !listener.servo->has_ended(); });
     if (first != listeners_.end()) {

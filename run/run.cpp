@@ -160,8 +160,7 @@ void Run::take(const Session& session) {
     session_settings_ = session.settings;
     settings_ = session.renderer.settings;
     isovalue_ = session.renderer.proxy.isovalue;
-    frozen_ = false;
-    sent_.clear();
+    frozen_ = session.frozen;
 }
 
 void Run::launch(Session session) {
@@ -195,53 +194,41 @@ Field Run::field_now() const {
     return field;
 }
 
-/// A new session with everything that was asked for, at the level and place to which penetrability,
-/// clutch and scale had led by tick `last`. A level of layers does not count.
-Session Run::session_from(double isovalue, const DeviceTransform& transform,
-                          std::int64_t last) const {
+/// Throws devices::DeviceError while a call of the driver does not return: the servo's thread is
+/// still in the device, so neither the session nor the device can be taken from it.
+void Run::require_answer() const {
+    if (device_failure() != DeviceFailure::hung || !servo_->is_running()) return;
+    throw devices::DeviceError("the device '" + device_->info().name + "': " + device_problem());
+}
+
+/// A new session with everything that was asked for, at the place of the servo that has stopped:
+/// penetrability, clutch and scale may have led elsewhere, and the proxy stays on its side of the
+/// surface that it touches. A level of layers does not count.
+Session Run::session_stopped() {
+    require_answer();
+    const Session& last = servo_->session();
     RendererSettings settings = settings_;
-    settings.transform = transform;
-    const auto open = [&](const Sent& sent) { return last < sent.after + Servo::sure_after; };
-    const bool by_layers =
-        have_surfaces(settings.layers) || std::ranges::any_of(sent_, [&](const Sent& sent) {
-            return open(sent) && std::holds_alternative<command::UseLayers>(sent.command);
-        });
-    const bool known = std::isfinite(isovalue) && !by_layers;
-    Session session{make_renderer(field_, known ? isovalue : isovalue_, settings),
+    settings.transform = last.renderer.settings.transform;
+    const double level =
+        last.renderer.isovalue_without_layers.value_or(last.renderer.proxy.isovalue);
+    Session session{make_renderer(field_, std::isfinite(level) ? level : isovalue_, settings),
                     session_settings_};
-    for (const Sent& sent : sent_) {
-        // Only what the servo may not have carried out; everything else is in settings_.
-        const bool leads = std::holds_alternative<command::Isovalue>(sent.command) ||
-                           std::holds_alternative<command::Scale>(sent.command) ||
-                           std::holds_alternative<DeviceTransform>(sent.command);
-        if (leads && open(sent)) apply(session, sent.command);
-    }
-    if (!std::isfinite(session.renderer.proxy.isovalue)) {
-        session.renderer.proxy.isovalue = isovalue_;
-    }
+    take_up(session, last);
     return session;
 }
 
-std::int64_t Run::last_tick() const {
-    const auto now = snapshot();
-    return now ? now->number : -1;
-}
-
-/// As the servo that has stopped left it.
-Session Run::session_stopped() const {
-    const Renderer& last = servo_->session().renderer;
-    Session session = session_from(last.isovalue_without_layers.value_or(last.proxy.isovalue),
-                                   last.settings.transform, last_tick());
-    // The time of a session begins at 0. Its motors are as warm as they were.
-    session.renderer.force.motors.warmth = last.force.motors.warmth;
-    return session;
-}
-
-/// As the running servo has it now, or as the first one will begin.
+/// As the running servo has it now, or as the first one will begin. What it has not carried out yet
+/// is in what was asked for.
 Session Run::session_now() const {
-    const auto now = servo_ ? servo_->snapshot() : std::nullopt;
-    if (!now) return session_from(isovalue_, settings_.transform, -1);
-    return session_from(now->session.tick.proxy.isovalue, now->session.transform, now->number);
+    RendererSettings settings = settings_;
+    double isovalue = isovalue_;
+    const auto now = servo_ && servo_->waiting() == 0 ? servo_->snapshot() : std::nullopt;
+    if (now) {
+        settings.transform = now->session.transform;
+        const double level = now->session.tick.proxy.isovalue;
+        if (std::isfinite(level) && !have_surfaces(settings.layers)) isovalue = level;
+    }
+    return {make_renderer(field_, isovalue, settings), session_settings_};
 }
 
 DeviceFailure Run::device_failure() const {
@@ -263,12 +250,9 @@ void Run::send(const Command& asked) {
     if (!running_) throw WrongState("the run has stopped, so it carries out no more commands");
     const Command command = placed_beside(asked, data_->loaded());
     check(command, settings_, kind_of(field_));
-    const std::int64_t after = last_tick();
     if (!servo.send(command)) {
         throw QueueFull("too many commands at once: one was left out");
     }
-    while (!sent_.empty() && sent_.front().after + Servo::sure_after <= after) sent_.pop_front();
-    sent_.push_back({after, command});
     Session changed{{field_, settings_, {}, {}}, session_settings_};
     changed.renderer.proxy.isovalue = isovalue_;
     if (settings_.tool) changed.renderer.tool_proxy.emplace(settings_.tool);

@@ -60,8 +60,7 @@ void Run::start_as(Run& before) {
         before.session_for(settings_, session_settings(setup, device()), before.device());
     before.stop_servo();
     before.running_ = false;
-    before.device_->stop();
-    const bool hangs = before.device_failure() == DeviceFailure::hung;
+    const bool hangs = before.servo_->is_running();
     if (!hangs && may_have_the_same_motors(setup_.device, before.setup_.device)) {
         session.renderer.force.motors.warmth =
             before.servo_->session().renderer.force.motors.warmth;
@@ -79,12 +78,14 @@ void Run::start_as(Run& before) {
         }
         throw;
     }
+    before.device_->stop();  // for good
     if (stays_frozen) send(command::Freeze{true});
 }
 
 void Run::close_device() {
     stop_recording();
     stop();
+    require_answer();
     left_behind_ = unanswered();
     last_resort_.reset();
     device_.reset();
@@ -97,6 +98,7 @@ double Run::some_isovalue(const OnProgress& progress) const {
 
 void Run::use_device(const devices::DeviceChoice& device, const OnProgress& progress) {
     started_servo();  // throws before anything has changed
+    require_answer();
     left_behind_.clear();
     Setup setup = setup_;
     setup.device = device;
@@ -134,10 +136,8 @@ Session Run::session_for(const RendererSettings& fit, const SessionSettings& ses
     return {make_renderer(field_, isovalue_, settings), session};
 }
 
-/// The device that was closed for a choice which could not be opened. The hand stays frozen if it
-/// was.
+/// The device that was closed for a choice which could not be opened.
 void Run::reopen(double isovalue, const DeviceInfo& old) {
-    const bool frozen = frozen_;
     try {
         hold(open_for(setup_, isovalue));
     } catch (const std::exception& error) {
@@ -146,11 +146,11 @@ void Run::reopen(double isovalue, const DeviceInfo& old) {
                                                               "): choose it once more"));
     }
     launch(session_stopped());
-    if (frozen) send(command::Freeze{true});
 }
 
 void Run::use_buttons(const Buttons& buttons) {
     started_servo();
+    require_answer();
     Setup setup = setup_;
     setup.buttons = buttons;
     const SessionSettings session = session_settings(setup, device());
@@ -163,12 +163,16 @@ void Run::use_buttons(const Buttons& buttons) {
 
 void Run::use_field(Solid solid, Interpolation interpolation, std::optional<double> background) {
     started_servo();
+    require_answer();
     Field field(data_->start(), solid, background, interpolation);
+    RendererSettings settings = settings_;
+    if (solid != field_.solid()) settings.layers = nullptr;  // their order is that of the side
+    settings.penetrability = no_penetrability();
+    (void)make_renderer(field, isovalue_, settings);  // throws before anything has changed
     stop_recording();
     stop_servo();
-    if (solid != field_.solid()) settings_.layers = nullptr;  // their order is that of the side
     field_ = std::move(field);
-    settings_.penetrability = no_penetrability();
+    settings_ = std::move(settings);
     launch(session_stopped());
 }
 

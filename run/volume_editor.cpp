@@ -137,8 +137,7 @@ void VolumeEditor::rest_brush(const Servo& servo, const std::shared_ptr<const To
         hand.tool = tool;
         hand.touch.reset();
         hand.resting = true;
-        const auto now = servo.snapshot();
-        hand.from = now ? now->number + Servo::sure_after : 0;
+        hand.from = servo.sure_tick();
     }
 }
 
@@ -332,11 +331,14 @@ bool VolumeEditor::send_waiting() {
 void VolumeEditor::run(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
         std::this_thread::sleep_for(brush_interval);
-        {
-            std::unique_lock lock(mutex_);
-            has_work_.wait(lock, stop, [this] { return brush_ || !send_waiting(); });
+        try {
+            {
+                std::unique_lock lock(mutex_);
+                has_work_.wait(lock, stop, [this] { return brush_ || !send_waiting(); });
+            }
+            step(std::chrono::steady_clock::now());
+        } catch (const std::exception&) {  // no memory, not even for words: tried again in a moment
         }
-        step(std::chrono::steady_clock::now());
     }
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "palpate/names.hpp"
+#include "proxy/update.hpp"
 
 namespace palpate {
 namespace {
@@ -50,9 +51,8 @@ double threshold_now(const Penetrability& p, const Pressing& pressing) {
 }
 
 void put_scp(Proxy& proxy, ProxyUpdate& update, const Field& field, const Vec3& physical) {
-    proxy.scp = locate(field.interpolation(), index_from_physical(field.geometry(), physical));
-    proxy.scp_physical = physical;
-    update.scp = physical;
+    proxy.scp_physical = update.scp = physical;
+    put_on_lattice(proxy, field);
     update.density = value_at(field, proxy.scp);
 }
 

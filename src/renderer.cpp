@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "layers/stretch.hpp"
 #include "proxy/update.hpp"
 #include "reach.hpp"
 #include "tool_proxy/kept.hpp"
@@ -409,10 +410,10 @@ void use_tool(Renderer& renderer, std::shared_ptr<const Tool> tool,
     if (tool && !(proxy && proxy->use(tool))) return;
     forget_layers(renderer.layers, renderer.proxy, renderer.field);
     if (tool && !settings.tool) {
+        static_cast<ToolState&>(*proxy) = {};  // what it was when it was used last does not count
         proxy->pose = {renderer.proxy.scp_physical,
                        Quaternion(settings.transform.rotation * orientation).normalized()};
         proxy->placed = renderer.proxy.placed;
-        proxy->mode = Mode::free;
     }
     if (!tool && settings.tool) {
         // The point starts where the tool was, and is brought out there if that is inside.
@@ -471,9 +472,8 @@ Tick render(Renderer& renderer, const TickInput& device, StepObserver observer, 
     if (penetrability.on && !settings.tool && !have_surfaces(settings.layers) && !waits) {
         apply_penetrability(penetrability, renderer.field, 1 / settings.transform.scale,
                             renderer.proxy, tick.proxy, observer);
-        if (layers) {
-            layers->pulls = pulls(tick.proxy);
-            layers->pull = (tick.proxy.scp - tick.proxy.hip) / settings.transform.scale;
+        if (layers && tick.proxy.status == UpdateStatus::done) {
+            stretch_again(renderer.layers.spring, tick.proxy, settings.transform.scale, *layers);
         }
     }
     const ForceResult force =

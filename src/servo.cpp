@@ -160,9 +160,8 @@ void Servo::stop() noexcept {
     stops_.fetch_add(1, std::memory_order_relaxed);
     stopping_.store(true, std::memory_order_release);
     const bool is_servo_thread = std::this_thread::get_id() == thread_id_.load();
-    const auto runs = [&] { return state_.load(std::memory_order_acquire) == State::running; };
-    if (is_servo_thread && !in_step_ && runs()) end(schedule_.last_start);
-    while (!is_servo_thread && runs() && !device_->has_lost_force()) {
+    if (is_servo_thread && !in_step_ && is_running()) end(schedule_.last_start);
+    while (!is_servo_thread && is_running() && !device_->has_lost_force()) {
         std::this_thread::sleep_for(poll);
     }
     stops_.fetch_sub(1, std::memory_order_release);  // the last that touches the servo
@@ -194,10 +193,17 @@ bool Servo::send(const Command& command) {
         throw std::invalid_argument("a running session cannot resume at another point");
     }
     const CheckedCommand checked(command, start_, field_);
-    if (has_ended()) {
-        sent_.fetch_add(1, std::memory_order_relaxed);  // waits for good
-        return true;
-    }
+    const bool over = has_ended();
+    // A session that continues gets the newest samples from elsewhere.
+    const bool is_late = over && std::holds_alternative<command::Samples>(command);
+    if (!is_late && take(checked)) return true;
+    if (over) sent_.fetch_add(1, std::memory_order_relaxed);  // waits for good
+    return over;
+}
+
+/// False if the queue is full.
+bool Servo::take(const CheckedCommand& checked) {
+    const Command& command = checked.command();
     if (const auto* samples = std::get_if<command::Samples>(&command)) {
         hold(samples->samples);
         hold(samples->recipe);
@@ -206,6 +212,12 @@ bool Servo::send(const Command& command) {
     if (const auto* tool = std::get_if<command::UseTool>(&command)) hold(tool->tool);
     if (const auto* limits = std::get_if<DeviceLimits>(&command)) return lower(*limits, checked);
     return push(checked);
+}
+
+std::int64_t Servo::sure_tick() const noexcept {
+    const auto now = snapshot();  // before the commands are counted
+    const std::int64_t begun = now ? now->number : -1;
+    return begun + 2 + std::max<std::int64_t>(0, waiting() - 1) / commands_per_tick;
 }
 
 bool Servo::lower(const DeviceLimits& limits, const CheckedCommand& checked) {
@@ -265,9 +277,16 @@ bool Servo::has_ended() const noexcept {
            state_.load(std::memory_order_acquire) == State::ended;
 }
 
-const Session& Servo::session() const {
-    if (state_.load(std::memory_order_acquire) == State::running) {
-        throw std::logic_error("a running servo's session is its own");
+bool Servo::is_running() const noexcept {
+    return state_.load(std::memory_order_acquire) == State::running;
+}
+
+const Session& Servo::session() {
+    if (is_running()) throw std::logic_error("a running servo's session is its own");
+    while (const std::optional<CheckedCommand> checked = commands_.pop()) {
+        const bool records = std::holds_alternative<command::Resume>(checked->command());
+        if (!records) apply(session_, *checked);  // nothing more is recorded
+        add(obeyed_, 1);
     }
     return session_;
 }
@@ -377,7 +396,7 @@ void Servo::count(std::int64_t number, const Stamps& stamps, std::int64_t end) n
     }
     // A tick that ends after the next one was due has missed that deadline. Of the ticks that came
     // due meanwhile, only the last one is made up.
-    const std::int64_t late = (end - schedule_.due) / schedule_.period;
+    const std::int64_t late = std::max<std::int64_t>(0, (end - schedule_.due) / schedule_.period);
     add(missed_, late);
     schedule_.due += schedule_.period * std::max<std::int64_t>(1, late);
     add(ticks_, 1);

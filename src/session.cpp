@@ -23,7 +23,8 @@ bool plausible(const Session& session, double time, const Vec3& position) {
     return distance <= session.settings.fastest_hand * (time - session.past.seen_at);
 }
 
-/// The rotation without the rounding errors that orientations add each time the clutch closes.
+/// The rotation without the rounding errors of orientations, which add up each time the clutch
+/// closes.
 Mat3 orthonormal(const Mat3& m) {
     Mat3 r;
     r.col(0) = m.col(0).normalized();
@@ -92,6 +93,13 @@ double frame_at(const Moment& moment) {
     return static_cast<double>(moment.from) + moment.weight;
 }
 
+/// How many frames lie between two places. After the last frame of a loop, the first one follows.
+double frames_between(const Samples& samples, double one, double other) {
+    const double passed = std::abs(one - other);
+    if (!(samples.period() > 0)) return passed;
+    return std::min(passed, static_cast<double>(samples.frames().size()) - passed);
+}
+
 /// Moves a playing sequence on with the time of the ticks, within its frames.
 void play(Session& session, double time) {
     if (!std::isfinite(time)) return;
@@ -101,7 +109,7 @@ void play(Session& session, double time) {
         const double to = field.samples().within(field.time() + session.speed * dt);
         const double before = frame_at(field.moment());
         change_data(session.renderer, [to](Field& changed) { changed.set_time(to); });
-        const double passed = std::abs(frame_at(field.moment()) - before);
+        const double passed = frames_between(field.samples(), before, frame_at(field.moment()));
         session.renderer.force.changed |= passed * fewest_ticks_of_frame > 1;
     }
     session.past.begun = true;
@@ -192,7 +200,7 @@ void apply(Session& session,  // NOLINT(bugprone-exception-escape)
     Renderer& renderer = session.renderer;
     RendererSettings& settings = renderer.settings;
     Field& field = renderer.field;
-    renderer.force.changed = true;
+    if (!std::holds_alternative<DeviceLimits>(checked.command())) renderer.force.changed = true;
     const Overloaded apply_one{
         [&](const command::Isovalue& to) { use_isovalue(renderer, to.isovalue); },
         [&](const command::Freeze& to) {
@@ -242,6 +250,7 @@ bool keep_within(Session& session, const DeviceLimits& limits) noexcept {
     const DeviceLimits device = smaller(settings.device, limits);
     const ForceSettings force = stable(settings.force, device);
     const bool changed = !(device == settings.device && force == settings.force);
+    session.renderer.force.changed |= changed;
     settings.device = device;
     settings.force = force;
     return changed;
@@ -261,9 +270,12 @@ SessionTick advance(Session& session, double time, const DeviceReading& reading,
     const bool clutched = session.clutched || (reading.buttons & settings.clutch_buttons) != 0;
     state.released = session.frozen || clutched;
 
+    // An orientation that is not a rotation is ignored: the last one stays.
+    const bool has_tool = is_rotation(reading.orientation, orientation_tolerance);
+    const bool is_exact = is_rotation(reading.orientation);
+    const Mat3 tool = is_exact ? reading.orientation : orthonormal(reading.orientation);
     if (state.valid) {
-        // An orientation that is not a rotation is ignored: the last one stays.
-        if (is_rotation(reading.orientation)) session.past.tool = reading.orientation;
+        if (has_tool) session.past.tool = tool;
         if (!session.past.seen) {
             session.past.frozen_hand = reading.position;
             session.past.frozen_tool = session.past.tool;
@@ -278,9 +290,7 @@ SessionTick advance(Session& session, double time, const DeviceReading& reading,
     state.position = session.frozen ? session.past.frozen_hand : reading.position;
     state.orientation = session.frozen ? session.past.frozen_tool : session.past.tool;
     // Devices without an orientation give the identity.
-    if (!reading.orientation.isIdentity(0) && is_rotation(reading.orientation)) {
-        state.pointing = -reading.orientation.col(2);
-    }
+    if (!reading.orientation.isIdentity(0) && has_tool) state.pointing = -tool.col(2);
     play(session, time);
     SessionTick result;
     result.tick = render(session.renderer, state, {}, clock);

@@ -256,9 +256,9 @@ Quaternion turned(const Quaternion& from, const Vec3& rotation) {
     return (Quaternion(std::cos(0.5 * angle), v[0], v[1], v[2]) * from).normalized();
 }
 
-bool is_rotation(const Mat3& m) {
-    return m.allFinite() && (m.transpose() * m - Mat3::Identity()).cwiseAbs().maxCoeff() < 1e-6 &&
-           m.determinant() > 0;
+bool is_rotation(const Mat3& m, double tolerance) noexcept {
+    const auto difference = [&] { return Mat3(m.transpose() * m - Mat3::Identity()); };
+    return m.allFinite() && difference().cwiseAbs().maxCoeff() < tolerance && m.determinant() > 0;
 }
 
 }  // namespace palpate

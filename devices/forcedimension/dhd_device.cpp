@@ -336,7 +336,7 @@ Trouble DhdDevice::read_device(DeviceReading& reading) noexcept {
         for (int row = 0; row < 3; ++row) {
             for (int column = 0; column < 3; ++column) frame(row, column) = rows[row][column];
         }
-        if (is_rotation(frame)) {
+        if (is_rotation(frame, orientation_tolerance)) {
             reading.orientation = axes() * frame * axes().transpose();
         } else {
             trouble.kind = Trouble::Kind::not_a_rotation;

@@ -42,6 +42,12 @@ std::string service_at(const Address& address) {
     return "the Inverse Service at " + place_of(address);
 }
 
+/// It stays the device that was found, also after another connection: the limits are its limits.
+Settings settled(Settings settings, const ServiceState& found) {
+    settings.device = found.device_id;
+    return settings;
+}
+
 template <std::size_t size>
 std::array<char, size> clipped(std::string_view text) {
     std::array<char, size> characters{};
@@ -99,14 +105,13 @@ Clock::duration Questions::behind(Clock::time_point now) const {
 
 Inverse3::Inverse3(Settings settings, Address address, Talk talk, const Timing& timing)
     : LinkedDevice(timing),
-      settings_(std::move(settings)),
+      settings_(settled(std::move(settings), talk.state)),
       address_(std::move(address)),
       service_(service_at(address_)),
       is_minverse_(talk.state.list == "minverse"),
       talk_(std::move(talk)),
+      claim_(settings_.device + " at " + place_of(address_), opening_hand()),
       wait_(first_wait) {
-    const std::string& id = talk_.state.device_id;
-    if (!id.empty()) claim_.emplace(id + " at " + place_of(address_), hand_);
     tell_identity(talk_.state);
     // The release whose documentation says "vector" tells preset and mount, too.
     const bool is_new = !talk_.state.mapping.preset.empty();
@@ -176,22 +181,23 @@ void Inverse3::run() {
 
 void Inverse3::step() {
     if (!connected_) return reconnect();
-    std::optional<std::string> why;
     try {
-        why = converse();
+        if (const auto why = converse()) lose(*why);
     } catch (const std::exception& error) {
-        why = error.what();
+        lose(error.what());
     }
-    if (why) lose(*why);
 }
 
-void Inverse3::lose(const std::string& why) {
+void Inverse3::lose(std::string_view why) noexcept {
     gate_.note(false, timing_.now());
     link_.report(DeviceStatus::lost, timing_.now());
-    tell("lost " + service_ + " (" + why + "); trying to connect again");
     talk_.channel->drop();
     connected_ = false;
     next_attempt_ = now() + wait_;
+    try {
+        tell("lost " + service_ + " (" + std::string(why) + "); trying to connect again");
+    } catch (const std::exception&) {  // no memory for words
+    }
 }
 
 void Inverse3::reconnect() {
@@ -241,28 +247,11 @@ std::optional<std::string> Inverse3::converse() {
     return std::nullopt;
 }
 
-/// Whether no other hand has this device, which may have been plugged in just now.
-bool Inverse3::claims(const std::string& id) {
-    const std::string device = id + " at " + place_of(address_);
-    if (claim_ && claim_->device() == device) return true;
-    claim_.reset();
-    try {
-        claim_.emplace(device, hand_);
-        taken_.clear();
-    } catch (const DeviceError& taken) {
-        gate_.note(false, timing_.now());
-        taken_ = taken.what();
-    }
-    return claim_.has_value();
-}
-
 /// Sends the force; the answer is the next state.
 bool Inverse3::ask(Clock::time_point now) {
     questions_.asked(now);
     const std::string& id = talk_.state.device_id;
-    if (id.empty() || !claims(id)) {
-        return talk_.channel->send(snapshot_command(), now + send_limit);
-    }
+    if (id.empty()) return talk_.channel->send(snapshot_command(), now + send_limit);
     const bool pins = !std::exchange(has_pinned_, true) && settings_.preset != "keep";
     if (pins) pinned_at_ = now;
     const bool wants_all = now >= next_full_;
@@ -383,7 +372,6 @@ void Inverse3::try_other_key(Clock::time_point now) {
 
 std::string Inverse3::what_is_wrong(Clock::time_point now) const {
     const ServiceState& state = talk_.state;
-    if (!taken_.empty()) return taken_;
     if (!changed_.empty()) {
         return "another program has changed the " + std::string(changed_) + " of " + state.model +
                ", which maps the force, too: end that program, then start again";
@@ -413,7 +401,7 @@ void Inverse3::report_state(Clock::time_point asked, Clock::time_point now) {
     const auto age = now - asked;
     reading.age = std::chrono::duration<double>(age).count();
     check_echo(now);
-    reading.status = taken_.empty() ? status_of_mapping(now) : DeviceStatus::fault;
+    reading.status = status_of_mapping(now);
     if (reading.status == DeviceStatus::ready) reading.status = status_of(state);
     const bool breaks = reading.status == DeviceStatus::ready && now < ready_again_;
     if (breaks) reading.status = DeviceStatus::starting;

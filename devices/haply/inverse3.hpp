@@ -19,7 +19,7 @@
 namespace palpate::devices::haply {
 
 struct Settings {
-    std::string device;                 ///< device_id; empty: the first
+    std::string device;                 ///< device_id; empty: the first that is found
     std::optional<ForceKey> force_key;  ///< nothing: what the service seems to take
     std::string preset = "defaults";    ///< of the service, pinned; "keep": as it is
     Mat3 axes = axes_from("xz-y");
@@ -88,14 +88,13 @@ class Inverse3 final : public LinkedDevice {
     void reconnect();
     std::optional<std::string> converse();
     bool ask(Clock::time_point now);
-    bool claims(const std::string& id);
     void take(const Received& received, Clock::time_point asked, Clock::time_point now);
     DeviceStatus status_of_mapping(Clock::time_point now);
     bool is_as_pinned() const;
     void check_echo(Clock::time_point now);
     void try_other_key(Clock::time_point now);
     void report_state(Clock::time_point asked, Clock::time_point now);
-    void lose(const std::string& why);
+    void lose(std::string_view why) noexcept;
     void say_goodbye();
     std::string what_is_wrong(Clock::time_point now) const;
     const Model& model() const;
@@ -116,15 +115,13 @@ class Inverse3 final : public LinkedDevice {
     const Address address_;
     const std::string service_;  // in words
     const bool is_minverse_;
-    const void* const hand_ = opening_hand();  // its own
     Newest<Problem> problem_;
     Newest<Identity> identity_;
     std::atomic<bool> quit_{false};
 
     // Used by the thread only.
     Talk talk_;
-    std::optional<Claim> claim_;  // of the device that it talks of
-    std::string taken_;           // why there is none
+    const Claim claim_;  // of the device
     bool connected_ = true;
     Questions questions_;
     std::string told_;

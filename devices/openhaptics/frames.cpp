@@ -119,7 +119,7 @@ Trouble Frames::read_device(DeviceReading& reading) noexcept {
     hd_.get_int(parameter::buttons, &buttons);
     reading.position = Vec3(position[0], position[1], position[2]);
     const Mat3 orientation = orientation_of(transform);
-    const bool turned = !setup_.has_orientation || is_rotation(orientation);
+    const bool turned = !setup_.has_orientation || is_rotation(orientation, orientation_tolerance);
     if (setup_.has_orientation && turned) reading.orientation = orientation;
     reading.buttons = static_cast<std::uint32_t>(buttons) & 0xFU;
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <list>
 #include <utility>
 #include <vector>
 
@@ -54,6 +55,12 @@ void set_workspace(const Hd& hd, DeviceInfo& info) {
     const Vec3 corner = 0.5 * Vec3(touch.width, touch.height, touch.depth);
     info.workspace_low = sensible ? low : Vec3(-corner);
     info.workspace_high = sensible ? high : corner;
+}
+
+/// Frames that a driver which did not answer at the end may still call.
+std::list<std::shared_ptr<Frames>>& kept_frames() {
+    static auto& kept = *new std::list<std::shared_ptr<Frames>>;
+    return kept;
 }
 
 DeviceInfo ask(const Hd& hd, double servo_rate) {
@@ -155,6 +162,8 @@ Phantom::Phantom(std::unique_ptr<Attachment> attachment, const Settings& setting
         Frames::Setup{attachment_->device(), info_.limits.maximum_force,
                       info_.limits.continuous_force, info_.limits.maximum_torque,
                       info_.has_orientation, styles_, timing_.now});
+    kept_.push_back(frames_);
+    kept_frames();
     try {
         start();
     } catch (...) {
@@ -191,9 +200,7 @@ void Phantom::end_loop() noexcept {
     hd.unschedule(scheduled_);
     is_scheduled_ = false;
     if (frames_->ended()) return;
-    // A driver that has not called for so long may still do so: what it would call is kept.
-    static auto& kept = *new std::vector<std::shared_ptr<Frames>>;
-    kept.push_back(frames_);
+    kept_frames().splice(kept_frames().end(), kept_);
 }
 
 void Phantom::check(const char* step) const {

@@ -1,6 +1,7 @@
 // An open OpenHaptics device: attached to the driver, with its servo loop running.
 #pragma once
 
+#include <list>
 #include <memory>
 #include <string>
 
@@ -64,6 +65,7 @@ class Phantom final : public Device {
     DeviceInfo info_;
     unsigned int styles_ = 0;  // of calibration
     std::shared_ptr<Frames> frames_;
+    std::list<std::shared_ptr<Frames>> kept_;  // the same, so that to keep it needs no memory
     unsigned long scheduled_ = 0;
     bool is_scheduled_ = false;
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <exception>
 #include <utility>
 
 #include "palpate/devices/error.hpp"
@@ -70,7 +71,10 @@ std::string Mouse::problem() const {
 void Mouse::run() {
     while (!quit_) {
         socket_.wait_until(timing_.now() + period);
-        step();
+        try {
+            step();
+        } catch (const std::exception&) {  // no memory: perhaps later
+        }
     }
 }
 

@@ -41,13 +41,19 @@ struct DeviceInfo {
 /// stiffness or a number of buttons that no device has. The limits have a check of their own.
 void check(const DeviceInfo& info);
 
+/// Orientations of devices count as rotations up to this tolerance of is_rotation(): many have few
+/// digits.
+inline constexpr double orientation_tolerance = 1e-3;
+
 /// The newest measurement of a device.
 struct DeviceReading {
-    Vec3 position = Vec3::Zero();         ///< [device mm]
-    Mat3 orientation = Mat3::Identity();  ///< tool axes to device axes; identity if not known
-    std::uint32_t buttons = 0;            ///< bit b is set while button b is held
-    std::optional<double> opening = {};   ///< [rad] of a gripper, 0: closed. None: it has none
-    double age = 0;                       ///< [s] since it was measured. Below 0, NaN, inf: stale
+    Vec3 position = Vec3::Zero();  ///< [device mm]
+    /// Tool axes to device axes; identity if not known. One that is no rotation, to
+    /// orientation_tolerance, is ignored.
+    Mat3 orientation = Mat3::Identity();
+    std::uint32_t buttons = 0;           ///< bit b is set while button b is held
+    std::optional<double> opening = {};  ///< [rad] of a gripper, 0: closed. None: it has none
+    double age = 0;                      ///< [s] since it was measured. Below 0, NaN, inf: stale
     DeviceStatus status = DeviceStatus::starting;
     /// Limits of a device that learns them only when it connects, in every reading from then on.
     /// None: those that info() gave when the servo was constructed still hold.

@@ -27,7 +27,7 @@ struct ServoSettings {
     double rate = 1000;  ///< [Hz] 250 to 8000
     /// Ask for SCHED_FIFO and for memory that is not swapped out. See Servo::privileges().
     bool real_time = true;
-    int priority = 80;                ///< of SCHED_FIFO, 1 to 99
+    int priority = 80;                ///< of SCHED_FIFO, 1 to 99. Threads of devices have 81
     std::size_t command_room = 1024;  ///< commands that may wait
     /// The queue that records ticks and commands. May be null. Must outlive the servo, or its
     /// stop_recording(). When the queue is full, events are lost (ServoReport::unrecorded). For
@@ -157,12 +157,14 @@ class Servo {
 
     /// Checks a command and puts it in the queue. False if the queue is full. Throws
     /// std::invalid_argument as check(Command) does, and for limits that lower nothing. Any thread;
-    /// never waits for the servo thread. A session that has ended accepts every command and
-    /// executes none, so that a sender to several sessions need not wait. Keeps samples alive until
-    /// the servo uses others, so that its thread never frees them.
+    /// never waits for the servo thread. A session that has ended accepts every command, so that a
+    /// sender to several sessions need not wait. Except for samples, these take effect in session()
+    /// as far as the queue has room. Keeps samples alive until the servo uses others, so that its
+    /// thread never frees them.
     bool send(const Command& command);
-    /// A command that was sent after tick n has its effect in tick n + sure_after at the latest.
-    static constexpr std::int64_t sure_after = 2;
+    /// The number of the tick in which all commands sent so far have had their effect, at the
+    /// latest: a tick executes at most 16. Any thread, never waits.
+    std::int64_t sure_tick() const noexcept;
     /// The newest tick. Nothing before the first. Any thread, never waits.
     std::optional<Snapshot> snapshot() const noexcept { return snapshot_.get(); }
     ServoReport report() const noexcept;
@@ -172,9 +174,13 @@ class Servo {
     DeviceFailure device_failure() const noexcept;
     /// There are no more ticks: stop() was called, or the device has failed. Any thread.
     bool has_ended() const noexcept;
-    /// The session after its last tick, for example to continue it in another servo. Throws
-    /// std::logic_error while the thread runs.
-    const Session& session() const;
+    /// A tick or the thread may still use session and device, also after stop() while a call of the
+    /// device hangs. Any thread.
+    bool is_running() const noexcept;
+    /// The session after its last tick and after all commands that no tick has executed, for
+    /// example to continue it in another servo. One thread. Throws std::logic_error while
+    /// is_running().
+    const Session& session();
 
     /// A sentence for each privilege: granted, or not granted and what to set. After start().
     const std::vector<std::string>& privileges() const { return privileges_; }
@@ -208,6 +214,7 @@ class Servo {
     void show_failure() noexcept;
     void publish(std::int64_t number, const SessionTick& tick) noexcept;
     void hold(const std::shared_ptr<const void>& sent);
+    bool take(const CheckedCommand& checked);
     bool push(const CheckedCommand& checked);
     bool lower(const DeviceLimits& limits, const CheckedCommand& checked);
 

@@ -171,6 +171,7 @@ struct SessionPoint {
     double speed = 0;
     bool frozen = false;
     bool clutched = false;
+    bool starts_inside = false;
     HandPast past = {};
     Proxy proxy;
     std::optional<double> isovalue_without_layers;
@@ -182,6 +183,11 @@ struct SessionPoint {
 /// Writes the state of a session to `point`. The proxy first drops results that only save time.
 /// Neither throws nor allocates.
 void checkpoint(Session& session, SessionPoint& point) noexcept;
+/// Continues where another session was left, with the same device and on the same grid. The field
+/// may be another one: where the solid side stays, the proxy stays on its side of the surface that
+/// it touched. Time begins anew, motors are as warm as they were, and all surfaces of layers are
+/// closed. Call it before the first tick.
+void take_up(Session& session, const Session& before);
 
 /// The result of a live tick.
 struct SessionTick {

@@ -105,8 +105,9 @@ inline Vec3 physical_from_tool(const Pose& pose, const Vec3& point) {
 Vec3 rotation_between(const Quaternion& from, const Quaternion& to);
 /// Turned by a rotation vector (physical axes), unit again.
 Quaternion turned(const Quaternion& from, const Vec3& rotation);
-/// Whether a matrix is orthonormal to 1e-6 and does not mirror.
-bool is_rotation(const Mat3& matrix);
+/// Whether a matrix does not mirror and is orthonormal, to this in every number of its transpose
+/// times itself.
+bool is_rotation(const Mat3& matrix, double tolerance = 1e-6) noexcept;
 
 /// The solid of a rigid tool, as distances from its surface. Immutable. Not for the servo thread,
 /// which uses only the tool's points.

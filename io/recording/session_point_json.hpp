@@ -142,6 +142,7 @@ static void members(auto& v, Is<SessionPoint> auto& s) {
     v("speed", s.speed);
     v("frozen", s.frozen);
     v("clutched", s.clutched);
+    v("starts_inside", s.starts_inside);
     v("past", s.past);
     v("proxy", s.proxy);
     v("isovalue_without_layers", s.isovalue_without_layers);

@@ -40,6 +40,9 @@ void resume_tool(ToolProxy& proxy, const ToolState& state) noexcept {
     }
 }
 
+/// [s] The hand may have moved meanwhile for so long.
+constexpr double longest_change = 1;
+
 void require(bool is_so, const char* what) {
     if (!is_so) throw std::invalid_argument(std::string("the point at which to continue: ") + what);
 }
@@ -145,7 +148,7 @@ void checkpoint(Session& session, SessionPoint& point) noexcept {
     point.clutched = session.clutched;
     point.past = session.past;
     renderer.proxy.kept_samples = {};  // a recording does not have them, and budgets count them
-    renderer.starts_inside = false;
+    point.starts_inside = renderer.starts_inside;
     point.proxy = renderer.proxy;
     point.isovalue_without_layers = renderer.isovalue_without_layers;
     point.drawn_to = renderer.drawn_to;
@@ -176,6 +179,30 @@ void check(const SessionPoint& point, const RendererSettings& settings, const Fi
     require(is_possible(point.tool, settings.tool.get(), field.geometry), "the tool has no pose");
 }
 
+void take_up(Session& session, const Session& before) {
+    session.frozen = before.frozen;
+    session.clutched = before.clutched;
+    session.past = before.past;
+    session.past.begun = false;
+    session.past.last_tick = 0;
+    session.past.seen_at = -longest_change;
+    Renderer& renderer = session.renderer;
+    const Renderer& last = before.renderer;
+    renderer.force.motors.warmth = last.force.motors.warmth;
+    if (renderer.field.solid() != last.field.solid()) return;
+    const double isovalue = renderer.proxy.isovalue;
+    LayerState layers = last.layers;
+    renderer.proxy = last.proxy;
+    field_will_change(renderer.proxy, felt_field(last));
+    forget_layers(layers, renderer.proxy, last.field);
+    renderer.proxy.isovalue = isovalue;
+    renderer.proxy.kept_samples = {};
+    renderer.starts_inside = last.starts_inside;
+    if (renderer.settings.tool && renderer.settings.tool == last.settings.tool) {
+        resume_tool(*renderer.tool_proxy, *last.tool_proxy);
+    }
+}
+
 void resume(Session& session, const SessionPoint& point) noexcept {
     Renderer& renderer = session.renderer;
     const RendererSettings& settings = renderer.settings;
@@ -185,7 +212,7 @@ void resume(Session& session, const SessionPoint& point) noexcept {
     session.clutched = point.clutched;
     session.past = point.past;
     renderer.proxy = point.proxy;
-    renderer.starts_inside = false;
+    renderer.starts_inside = point.starts_inside;
     renderer.isovalue_without_layers = point.isovalue_without_layers;
     renderer.drawn_to = point.drawn_to;
     renderer.force = point.force;

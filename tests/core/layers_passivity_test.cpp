@@ -34,12 +34,19 @@ Layers layers_of(const TestField& test, std::initializer_list<double> parts,
     return layers;
 }
 
-Renderer loop_renderer(const Field& field, const Layers& layers) {
+/// Without surfaces, layers leave the field's level, and penetrability is on.
+Renderer loop_renderer(const TestField& test, const Layers& layers) {
     RendererSettings settings = at_once();
     settings.layers = std::make_shared<Layers>(layers);
+    const bool has_surfaces = !layers.layers.empty();
+    if (!has_surfaces) {
+        settings.penetrability =
+            penetrability_threshold(no_puncture, test.isovalue, test.field.solid());
+    }
     settings.force.limit = settings.device.maximum_force = 1e6;
     settings.device.physical_damping = 1;
-    return make_renderer(field, layers.layers.front().level, settings);
+    return make_renderer(test.field, has_surfaces ? layers.layers.front().level : test.isovalue,
+                         settings);
 }
 
 /// A closed path round a point, as a sum of a few waves.
@@ -78,7 +85,7 @@ Balance work_of(const TestField& test, const Layers& layers, int loops, int step
     const Geometry& geometry = test.field.geometry();
     const Vec3 size = geometry.size.cast<double>();
     for (int i = 0; i < loops; ++i) {
-        Renderer renderer = loop_renderer(test.field, layers);
+        Renderer renderer = loop_renderer(test, layers);
         const Vec3 index(random.uniform(0, size[0]), random.uniform(0, size[1]),
                          random.uniform(0, size[2]));
         const Loop loop(random, physical_from_index(geometry, index), 3);
@@ -88,7 +95,7 @@ Balance work_of(const TestField& test, const Layers& layers, int loops, int step
         const auto step = [&](const Vec3& to, int number) {
             const Tick tick = render(renderer, {.time = number * 0.001, .position = to});
             balance.punctures += tick.layers.punctured;
-            balance.contacts += tick.layers.touched >= 0;
+            balance.contacts += tick.proxy.mode == Mode::constrained;
             work += 0.5 * (last.force + tick.force).dot(to - from);
             last = tick;
             from = to;
@@ -144,4 +151,11 @@ TEST(LayersEnergy, is_not_made_by_stiffness_that_varies_along_a_surface) {
     Layers layers = layers_of(test, {0}, {1}, no_puncture);
     layers[stiffness].gradient.knots = {{0, 0}, {0.3, 1}};
     expect_passive(test, layers, 54);
+}
+TEST(LayersEnergy, is_not_made_by_varying_stiffness_where_penetrability_is_on) {
+    const TestField test = smoothed(marschner_lobb_field());
+    Layers layers;
+    layers[stiffness].density.knots = {{0, 1}};
+    layers[stiffness].gradient.knots = {{0, 0}, {0.3, 1}};
+    expect_passive(test, layers, 55);
 }

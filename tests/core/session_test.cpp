@@ -472,4 +472,15 @@ TEST(Session, neither_ticks_nor_commands_allocate) {
     EXPECT_EQ(allocation_count(), before);
 }
 
+TEST(Session, to_record_it_changes_nothing_of_a_hand_that_starts_inside) {
+    Live live;
+    live.session.renderer.starts_inside = true;
+    SessionPoint point;
+    checkpoint(live.session, point);
+    EXPECT_TRUE(live.session.renderer.starts_inside);
+    Live again;
+    apply(again.session, command::Resume{std::make_shared<const SessionPoint>(point)});
+    EXPECT_TRUE(again.session.renderer.starts_inside);
+}
+
 }  // namespace

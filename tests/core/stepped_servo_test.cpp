@@ -116,3 +116,25 @@ TEST(SteppedServo, that_was_stepped_is_not_started) {
     stepped.step(0);
     EXPECT_THROW(stepped.start(), std::logic_error);
 }
+
+TEST(SteppedServo, its_session_has_all_commands_also_those_that_no_tick_has_executed) {
+    ScriptedDevice device(entering_hand);
+    Servo servo(pressing(), device);
+    servo.step(0);
+    EXPECT_EQ(servo.sure_tick(), 2);
+    for (int i = 0; i < 60; ++i) ASSERT_TRUE(servo.send(command::Isovalue{20.0 + i}));
+    const std::int64_t sure = servo.sure_tick();
+    int tick = 0;
+    while (servo.waiting() > 0) servo.step(ns_of(++tick));
+    EXPECT_GT(tick, 2);
+    EXPECT_LE(tick, sure);
+    EXPECT_THROW((void)servo.session(), std::logic_error);
+    for (int i = 0; i < 60; ++i) ASSERT_TRUE(servo.send(command::Isovalue{30.0 + i}));
+    servo.step(ns_of(++tick));
+    servo.stop();
+    ASSERT_TRUE(servo.send(command::Freeze{true})) << "after its end";
+    EXPECT_GT(servo.waiting(), 0);
+    EXPECT_EQ(servo.session().renderer.proxy.isovalue, 89);
+    EXPECT_TRUE(servo.session().frozen);
+    EXPECT_EQ(servo.waiting(), 0);
+}

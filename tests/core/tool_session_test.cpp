@@ -403,4 +403,44 @@ TEST(ToolSession, nothing_allocates_and_the_same_input_gives_the_same_bits) {
     EXPECT_GT(contacts, count / 10);
 }
 
+TEST(ToolSession, a_tool_that_is_taken_up_again_is_as_new) {
+    FeltLive live(settings_with(one_arm({0, 0, 5})));
+    live.rest_at(32);
+    const CheckedCommand away(command::UseTool{nullptr}, live.session.renderer.settings,
+                              kind_of(live.session.renderer.field));
+    ToolProxy& proxy = *live.session.renderer.tool_proxy;
+    ASSERT_GT(proxy.contact_count, 0);
+    proxy.sliding = true;
+    proxy.trust = 0.125;
+    proxy.stride = 2;
+    apply(live.session, away);
+    apply(live.session, command::UseTool{one_arm({0, 5, 0})});
+    EXPECT_FALSE(proxy.sliding);
+    EXPECT_EQ(proxy.trust, ToolState{}.trust);
+    EXPECT_EQ(proxy.stride, ToolState{}.stride);
+    EXPECT_EQ(proxy.contact_count, 0);
+    EXPECT_TRUE(proxy.placed);
+}
+
+/// As in files with four decimals, and from drivers that compute with few digits.
+TEST(ToolSession, orientations_with_few_digits_turn_the_tool) {
+    FeltLive live(settings_with(one_arm({0, 0, 5})));
+    const auto rounded = [](const Mat3& m) {
+        return Mat3(((m * 1e4).array().round() / 1e4).matrix());
+    };
+    for (int i = 0; i < 200; ++i) {
+        const Mat3 exact =
+            turned(Quaternion::Identity(), 0.01 * i * Vec3(0.6, 0.3, 0.2)).toRotationMatrix();
+        live.reading.orientation = rounded(exact);
+        live.next();
+        const Mat3& tool = live.session.past.tool;
+        ASSERT_TRUE(is_rotation(tool)) << i;
+        ASSERT_LE((tool - exact).cwiseAbs().maxCoeff(), 2e-4) << i;
+    }
+    live.reading.orientation *= 1.01;  // no rotation at all
+    const Mat3 before = live.session.past.tool;
+    live.next();
+    EXPECT_EQ(live.session.past.tool, before);
+}
+
 }  // namespace

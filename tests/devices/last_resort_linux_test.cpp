@@ -338,6 +338,19 @@ TEST(LastResort, leaves_signals_alone_that_the_application_handles_or_ignores) {
     EXPECT_EQ(std::signal(SIGALRM, SIG_DFL), SIG_DFL);  // as it was before
 }
 
+TEST(LastResort, gives_crashes_back_to_what_handled_them_before) {
+    const auto own = [](int) {};
+    const auto before = std::signal(SIGFPE, own);
+    std::atomic<double> sent, other_sent;
+    Motor motor(sent), other(other_sent);
+    {
+        const LastResort last_resort(motor);
+        const LastResort second(other);
+        EXPECT_NE(std::signal(SIGALRM, SIG_DFL), SIG_DFL) << "handled here";
+    }
+    EXPECT_EQ(std::signal(SIGFPE, before), static_cast<void (*)(int)>(own));
+}
+
 // Not inlined, and not turned into a loop: it is the stack that has to run out.
 [[gnu::noinline]] int endless(int depth) {  // NOLINT(misc-no-recursion)
     std::array<volatile char, 4096> page;

@@ -48,6 +48,10 @@ TEST(DeviceOptions, what_cannot_be_meant_is_refused_with_the_accepted_range) {
     const auto options = [] { return DeviceOptions(parse_device("a:x=12,y"), ""); };
     EXPECT_NE(refusal([&] { options().number("x", 1, 0, 10); }).find("from 0 to 10"),
               std::string::npos);
+    EXPECT_NE(refusal([] {
+                  DeviceOptions(parse_device("a:x="), "").number("x", 1, 0, 10);
+              }).find("x=: a number from 0 to 10"),
+              std::string::npos);
     EXPECT_NE(refusal([&] {
                   options().one_of("x", "b", {"b", "c"});
               }).find("b, c"),

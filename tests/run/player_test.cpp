@@ -2,6 +2,7 @@
 #include "palpate/run/player.hpp"
 
 #include "run/run_support.hpp"
+#include "support/allocation_counter.hpp"
 
 namespace palpate::run {
 namespace {
@@ -112,6 +113,22 @@ TEST(Player, without_a_loop_it_stops_at_the_end_and_with_one_it_goes_on) {
     p.player.set_loop(true);
     EXPECT_TRUE(p.until([&] { return p.now().moment > 5; }));
     EXPECT_TRUE(p.player.state().loop);
+}
+
+TEST(Player, plays_on_as_soon_as_there_is_memory_for_the_loader) {
+    Playing p({.loop = false});
+    p.start(20);
+    ASSERT_TRUE(p.until([&] { return p.now().moment == 0.8; }));
+    {
+        const support::DeniedAllocations denied(sizeof(io::FrameLoader),
+                                                sizeof(io::FrameLoader) + 1);
+        EXPECT_THROW(p.player.set_loop(true), std::bad_alloc);
+        for (int i = 0; i < 20; ++i) p.step();
+        EXPECT_FALSE(p.player.is_settled());
+        p.player.seek(0.4);
+        EXPECT_TRUE(p.player.state().loop);
+    }
+    EXPECT_TRUE(p.until([&] { return p.now().moment > 5; }));
 }
 
 TEST(Player, a_sequence_that_does_not_fit_plays_on_over_its_seam) {

@@ -19,7 +19,9 @@
 
 namespace palpate::support::combinations {
 
-enum class Surfaces { level, levels, labels, both };
+/// `curves`: the level, with a stiffness that varies along it, and penetrability that never presses
+/// through.
+enum class Surfaces { level, levels, labels, both, curves };
 enum class Touching { point, rod, box };
 enum class Data { plain, edited, between_frames, resident };
 
@@ -34,8 +36,8 @@ inline std::vector<Combination> all_combinations() {
     std::vector<Combination> all;
     for (const Data data : {Data::plain, Data::edited, Data::between_frames, Data::resident}) {
         for (const auto field : {Interpolation::linear, Interpolation::cubic}) {
-            for (const Surfaces surfaces :
-                 {Surfaces::level, Surfaces::levels, Surfaces::labels, Surfaces::both}) {
+            for (const Surfaces surfaces : {Surfaces::level, Surfaces::levels, Surfaces::labels,
+                                            Surfaces::both, Surfaces::curves}) {
                 all.push_back({field, surfaces, Touching::point, data});
             }
         }
@@ -47,7 +49,7 @@ inline std::vector<Combination> all_combinations() {
 }
 
 inline std::ostream& operator<<(std::ostream& out, const Combination& of) {
-    const std::array<const char*, 4> surfaces{"level", "levels", "labels", "both"};
+    const std::array<const char*, 5> surfaces{"level", "levels", "labels", "both", "curves"};
     const std::array<const char*, 3> tools{"point", "rod", "box"};
     const std::array<const char*, 4> data{"plain", "edited", "between_frames", "resident"};
     return out << name_of(of.field) << '_' << surfaces[std::size_t(of.surfaces)] << '_'
@@ -100,6 +102,10 @@ class Source {
 
 inline std::shared_ptr<const Layers> layers_of(Surfaces surfaces) {
     auto layers = std::make_shared<Layers>();
+    if (surfaces == Surfaces::curves) {
+        (*layers)[HapticProperty::stiffness].gradient.knots = {{0, 0.1}, {150, 1.5}};
+        return layers;
+    }
     const int levels = surfaces == Surfaces::labels ? 0 : 3;
     for (int i = 0; i < levels; ++i) {
         layers->layers.push_back(layer_of("level " + std::to_string(i), 100.5 + 25 * i,
@@ -126,6 +132,9 @@ inline RendererSettings settings_for(const Combination& of) {
     settings.device.physical_rotational_damping = 1e3;
     settings.force.torque_rate_limit = infinity;
     if (of.surfaces != Surfaces::level) settings.layers = layers_of(of.surfaces);
+    if (of.surfaces == Surfaces::curves) {
+        settings.penetrability = penetrability_threshold(infinity, level_of(of.tool), Solid::above);
+    }
     if (of.tool == Touching::rod) settings.tool = std::make_shared<const Tool>(rod_tool(3, 1));
     if (of.tool == Touching::box) {
         settings.tool = std::make_shared<const Tool>(box_tool({2, 2, 1}, 1));
@@ -142,7 +151,7 @@ inline Layers level_alone(Touching tool) {
 /// What the proxy touches. `of_level`: without layers.
 inline TouchedField touched_by(const Renderer& renderer, const Layers& of_level) {
     const std::shared_ptr<const Layers>& layers = renderer.settings.layers;
-    return {renderer.field, layers ? *layers : of_level, renderer.layers};
+    return {renderer.field, have_surfaces(layers) ? *layers : of_level, renderer.layers};
 }
 
 inline Session session_on(const Source& source, const Combination& of,

@@ -12,10 +12,10 @@ namespace palpate::devices {
 /// the zero is still on its way (Device::is_stopping()). Then the signal has its usual effect: the
 /// same exit status, the same core file. These signals are the crashes (SIGSEGV, SIGBUS, SIGILL,
 /// SIGFPE, SIGTRAP, SIGSYS, SIGABRT, also from an uncaught exception), whatever handled them
-/// before. They are also all others whose default action ends or suspends a program (SIGTERM,
-/// SIGALRM, SIGUSR1, SIGXCPU, SIGTSTP, real-time signals, ...), unless the application handles or
-/// ignores them. Its own handler then has to end the session. After a suspension the device stays
-/// without force.
+/// before, and handles them again when the last LastResort has ended. They are also all others
+/// whose default action ends or suspends a program (SIGTERM, SIGALRM, SIGUSR1, SIGXCPU, SIGTSTP,
+/// real-time signals, ...), unless the application handles or ignores them. Its own handler then
+/// has to end the session. After a suspension the device stays without force.
 ///
 /// It has no effect for SIGKILL, SIGSTOP and loss of power. Nor does it help if the thread that
 /// communicates with the device crashes, for example in a vendor's driver, because no other thread

@@ -76,6 +76,7 @@ class Player {
     };
 
     void begin(Pace pace);
+    void load();
     void update();
     bool send_frames();
     bool send_to_all(const Command& command);

@@ -3,7 +3,6 @@
 // continue.
 #pragma once
 
-#include <deque>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -119,17 +118,20 @@ class Run {
     /// cannot render them. Throws as the constructor does; the old device then continues. A
     /// recording is finished first. The same physical device is closed first and then opened with
     /// the new options. If that fails, it is opened as it was, and if that fails, too, it counts as
-    /// lost. Throws WrongState before start(), as does use_field().
+    /// lost. Throws WrongState before start(), and devices::DeviceError while a call of the old
+    /// device hangs, as do use_buttons() and use_field().
     void use_device(const devices::DeviceChoice& device, const OnProgress& progress = {});
     /// Continues with other buttons of the same device. The session starts anew with all settings
-    /// requested so far. A recording is finished first. Throws std::invalid_argument for a button
-    /// that the device does not have, and for one with both purposes. Then nothing has changed.
+    /// requested so far, and with the proxy, freeze and clutch as they are. A recording is finished
+    /// first. Throws std::invalid_argument for a button that the device does not have, and for one
+    /// with both purposes. Then nothing has changed.
     void use_buttons(const Buttons& buttons);
     /// Continues with this solid side, this interpolation, and this background outside the grid.
-    /// The session starts anew with all settings requested so far, except penetrability and, if the
-    /// solid side changes, layers. A recording is finished first; if that fails, io::OutputError
-    /// says so and the field stays. Throws std::invalid_argument for a background that is not
-    /// finite; then nothing has changed.
+    /// The session starts anew as with use_buttons(), but without penetrability and, if the solid
+    /// side changes, without layers and with the proxy at the hand. A recording is finished first;
+    /// if that fails, io::OutputError says so and the field stays. Throws std::invalid_argument for
+    /// a background that is not finite, and with a tool for a linear field; then nothing has
+    /// changed.
     void use_field(Solid solid, Interpolation interpolation, std::optional<double> background = {});
 
     /// Records from start() on, or from now on: the session and its force continue. Throws
@@ -170,11 +172,9 @@ class Run {
     void record_from_now();
     void tell_begin();
     void drop_recording();
-    Session session_from(double isovalue, const DeviceTransform& transform,
-                         std::int64_t last) const;
-    std::int64_t last_tick() const;
+    void require_answer() const;
     Session session_now() const;
-    Session session_stopped() const;
+    Session session_stopped();
 
     std::shared_ptr<Data> data_;
     Setup setup_;
@@ -186,12 +186,6 @@ class Run {
     RendererSettings settings_;
     double isovalue_ = 0;
     bool frozen_ = false;
-    /// A command that the servo may not have carried out yet, and the tick it was sent after.
-    struct Sent {
-        std::int64_t after;
-        Command command;
-    };
-    std::deque<Sent> sent_;
     std::shared_ptr<io::RecordingWriter> recording_;  // of all its hands
     int hand_ = 1;                                    // which of them this run is
     std::filesystem::path recorded_as_;

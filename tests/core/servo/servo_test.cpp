@@ -91,6 +91,16 @@ TEST(Servo, is_started_once) {
     EXPECT_EQ(servo.report().ticks, 1);
 }
 
+TEST(Servo, ticks_before_they_are_due_miss_nothing) {
+    ScriptedDevice device(&press);
+    Servo servo(ramp_session(), device, stepped());
+    for (int i = 0; i < 100; ++i) {
+        servo.step();
+        pass(std::chrono::microseconds(10));
+    }
+    EXPECT_EQ(servo.report().missed, 0);
+}
+
 TEST(Servo, a_session_that_has_stopped_goes_on_in_another_servo) {
     ScriptedDevice device(&press);
     Session left = ramp_session();

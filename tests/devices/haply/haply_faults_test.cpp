@@ -125,15 +125,49 @@ TEST_F(HaplyTest, a_break_while_pressing_is_lost_then_ready_without_force_in_bet
     EXPECT_EQ(device->problem(), "");
 }
 
+TEST_F(HaplyTest, a_break_is_noticed_without_memory_for_words) {
+    const auto device = open();
+    ASSERT_TRUE(is_pressed(*device));
+    service.drop();
+    {
+        const DeniedAllocations denied(64, 1 << 20);
+        for (int i = 0; i < 20; ++i) step();
+    }
+    EXPECT_EQ(device->read(0).status, DeviceStatus::lost);
+    EXPECT_TRUE(becomes(*device, DeviceStatus::ready, 3s));
+}
+
 TEST_F(HaplyTest, the_first_message_of_a_new_connection_counts_afresh) {
     const auto device = open();
     ASSERT_TRUE(becomes(*device, DeviceStatus::ready));
-    service.greet(snapshot({whole_device("NEW1", Vec3(0, 0, 0), status(false))}));
-    service.answer(moved("NEW1", Vec3(0, 0, 0.1)));
+    service.greet(snapshot({whole_device(id, Vec3(0, 0, 0), status(false))}));
+    service.answer(moved(id, Vec3(0, 0, 0.1)));
     service.drop();
     ASSERT_TRUE(becomes(*device, DeviceStatus::uncalibrated, 102ms));
     EXPECT_EQ(device->read(0).position, Vec3(0, 100, 0));
-    EXPECT_NE(device->info().model.find("NEW1"), std::string::npos);
+}
+
+/// Its limits and its workspace would be those of the one that was found first.
+TEST_F(HaplyTest, another_device_that_is_there_after_a_break_gets_no_force) {
+    const auto device = open();
+    ASSERT_TRUE(is_pressed(*device));
+    const std::string other =
+        R"({"session_id":7,"minverse":[)" + whole_device("M1", Vec3(0.1, -0.2, 0.3)) + "]}";
+    service.greet(other);
+    service.answer(other);
+    service.drop();
+    ASSERT_TRUE(becomes(*device, DeviceStatus::lost));
+    const std::size_t before = service.forces().size();
+    EXPECT_TRUE(says(*device, "has no device 049D; attached: M1", 1s)) << device->problem();
+    EXPECT_TRUE(throughout(
+        1s, [&] { return device->read(0).status == DeviceStatus::lost; }, [&] { press(*device); }));
+    EXPECT_EQ(service.forces().size(), before) << "a command to another device";
+    EXPECT_NE(device->info().model.find(id), std::string::npos);
+    service.greet(snapshot({whole_device(id)}));
+    service.answer(moved(id, Vec3(0.1, -0.2, 0.3)));
+    service.drop();
+    EXPECT_TRUE(becomes(*device, DeviceStatus::ready, 3s));
+    EXPECT_TRUE(is_pressed(*device));
 }
 
 TEST_F(HaplyTest, goes_on_trying_while_it_is_refused) {
@@ -162,26 +196,6 @@ TEST_F(HaplyTest, an_unplugged_device_is_lost_until_it_is_back) {
     EXPECT_TRUE(says(*device, "plug it in"));
     service.answer(snapshot({whole_device(id)}));
     EXPECT_TRUE(is_pressed(*device));
-}
-
-TEST_F(HaplyTest, one_that_is_plugged_in_later_and_serves_another_hand_says_so_until_it_is_free) {
-    const auto device = open();
-    ASSERT_TRUE(is_pressed(*device));
-    const int other_hand = 0;
-    std::optional<Claim> other(std::in_place, "B at 127.0.0.1:4711", &other_hand);
-    service.greet(snapshot({whole_device("B")}));
-    service.answer(moved("B", Vec3(0.1, -0.2, 0.3)));
-    service.drop();
-    ASSERT_TRUE(becomes(*device, DeviceStatus::fault, 1s));
-    EXPECT_TRUE(says(*device, "B at 127.0.0.1:4711 serves another hand"));
-    const std::size_t forces = service.forces().size();
-    EXPECT_TRUE(throughout(
-        100ms, [&] { return device->read(0).status == DeviceStatus::fault; },
-        [&] { press(*device); }));
-    EXPECT_EQ(service.forces().size(), forces);
-    other.reset();
-    EXPECT_TRUE(is_pressed(*device, 100ms));
-    EXPECT_EQ(device->problem(), "");
 }
 
 TEST_F(HaplyTest, a_service_that_comes_back_before_its_device_is_asked_for_it) {

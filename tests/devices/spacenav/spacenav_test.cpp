@@ -5,9 +5,11 @@
 
 #include <limits>
 #include <stdexcept>
+#include <thread>
 
 #include "devices/spacenav/mock_daemon.hpp"
 #include "devices/stepped_device.hpp"
+#include "support/allocation_counter.hpp"
 #include "support/eventually.hpp"
 #include "support/scratch_folder.hpp"
 
@@ -262,6 +264,23 @@ TEST_F(Spacenav, can_be_closed_while_it_is_lost) {
 
 /// The device's thread, at its real pace.
 class PacedSpacenav : public Spacenav {};
+
+TEST_F(PacedSpacenav, its_thread_outlives_a_lack_of_memory) {
+    auto device = open_spacenav(parse_device("spacenav:socket=" + daemon_.path()), any_scene());
+    ASSERT_TRUE(daemon_.accept());
+    daemon_.go_away();
+    const auto becomes = [&](DeviceStatus status) {
+        return support::comes_true([&] { return device->read(0).status == status; });
+    };
+    EXPECT_TRUE(becomes(DeviceStatus::lost));
+    {
+        const support::DeniedAllocations words(16, 1 << 20);
+        std::this_thread::sleep_for(std::chrono::milliseconds(600));  // two attempts to connect
+    }
+    daemon_.listen();
+    ASSERT_TRUE(daemon_.accept());
+    EXPECT_TRUE(becomes(DeviceStatus::ready));
+}
 
 TEST_F(PacedSpacenav, its_thread_moves_the_hand_and_connects_again) {
     auto device = open_spacenav(parse_device("spacenav:socket=" + daemon_.path()), any_scene());
