@@ -2924,6 +2924,10 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <source>Preparing to record to %1</source>
         <translation>Die Aufzeichnung in %1 wird vorbereitet</translation>
     </message>
+    <message>
+        <source>Finishing the recording</source>
+        <translation>Die Aufzeichnung wird abgeschlossen</translation>
+    </message>
 </context>
 <context>
     <name>palpate::viewer::SaveController</name>

@@ -10,6 +10,7 @@
 #include <QTimer>
 
 #include <cstdio>
+#include <thread>
 #include <utility>
 
 #include "apps/viewer/panel/layout.hpp"
@@ -93,6 +94,16 @@ void BackgroundTask::abandon() {
     worker_.reset();
     then_ = nullptr;
     Q_EMIT ended();
+}
+
+void BackgroundTask::end_within(std::chrono::milliseconds time) {
+    constexpr std::chrono::milliseconds between_looks{2};
+    const auto latest = std::chrono::steady_clock::now() + time;
+    while (worker_ && !worker_->ended() && std::chrono::steady_clock::now() < latest) {
+        std::this_thread::sleep_for(between_looks);
+    }
+    if (worker_ && worker_->ended()) look();
+    abandon();
 }
 
 /// Not for what is done at once: the strip makes the views smaller, which draws them anew.

@@ -150,6 +150,10 @@ class Run {
     /// recording. Throws io::OutputError if something could not be written. A pipe's reader that
     /// reads slowly is waited for until `progress` throws, or for half a second without it.
     std::int64_t stop_recording(const OnProgress& progress = {});
+    /// The same in two parts, for a thread that must not wait: nothing more is recorded. The
+    /// result, called once and on any thread, writes the rest and finishes the recording.
+    using FinishRecording = std::function<std::int64_t(const OnProgress& progress)>;
+    FinishRecording end_recording();
     /// Null unless a recording is running.
     const io::RecordingWriter* recording() const { return recording_.get(); }
 

@@ -226,7 +226,7 @@ TEST_F(ChangingData, a_recording_of_edits_is_played_with_them) {
     carve();
     const auto carved = work().samples;
     wait_until([&] { return now().session.version == work().version; });  // it is recorded, then
-    window_->recordings().stop();
+    stop_recording();
     window_->files().open_path(scratch("carving.csv"));
     wait_until([&] { return window_->playback() != nullptr; });
     EXPECT_EQ(window_->playback()->different(), 0U);

@@ -31,7 +31,7 @@ TEST_F(WordsInWindow, over_a_recording_tell_how_to_leave_it) {
     feel("synthetic:sphere:24x24x24");
     record("a.csv");
     wait_for_ticks(20);
-    window_->recordings().stop();
+    stop_recording();
     window_->files().open_path(scratch("a.csv"));
     wait_until([&] { return window_->playback() != nullptr; });
     auto& hint = part<QLabel>("hint");
