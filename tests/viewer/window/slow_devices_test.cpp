@@ -55,6 +55,7 @@ struct Driver {
     Gate opens, reads, stops, closes;
     std::atomic<bool> keeps_force{false};
     std::atomic<int> open{0}, opened{0};  // now; ever
+    std::atomic<int> sessions{0};         // whose clocks began
 };
 
 /// The one device that this driver has.
@@ -78,6 +79,7 @@ class Driven final : public Device {
         return info;
     }
     DeviceReading read(double time) override {
+        if (time <= std::exchange(last_, time)) ++driver_.sessions;
         driver_.reads.pass();
         return device_->read(time);
     }
@@ -92,6 +94,7 @@ class Driven final : public Device {
     Driver& driver_;
     const devices::Claim claim_;
     const std::unique_ptr<Device> device_;
+    double last_ = std::numeric_limits<double>::infinity();
 };
 
 class SlowDevices : public InWindow {
@@ -278,6 +281,8 @@ TEST_F(SlowDevices, that_are_added_feel_as_the_first_hand_does_by_then) {
     EXPECT_EQ(added.field().interpolation(), Interpolation::linear);
     EXPECT_EQ(added.field().background(), window_->content().live(1)->field().background());
     EXPECT_EQ(added.setup().buttons, (run::Buttons{{}, {}}));
+    wait_for_ticks(5);
+    EXPECT_EQ(driver_.sessions, 1) << "no force of the side that was solid before";
 }
 
 TEST_F(SlowDevices, are_not_waited_for_by_what_is_opened_instead) {
