@@ -260,11 +260,17 @@ TEST_F(ChangingData, a_sequence_plays_steps_and_is_sought_with_the_timeline) {
     EXPECT_TRUE(window_->statusBar()->currentMessage().contains("cannot be edited"));
     EXPECT_TRUE(window_->statusBar()->toolTip().contains("cannot be edited"));
     EXPECT_FALSE(window_->panel().brush_controls().choice().on);
+    const auto& shown = part<QAction>("brush_action");
+    EXPECT_FALSE(shown.isChecked());
     press(Qt::Key_K);
     wait_until([&] { return now().speed == 1; });
     feel("synthetic:sphere:32x32x32");
     EXPECT_FALSE(window_->timeline().isVisible());
-    EXPECT_TRUE(part<QAction>("brush_action").isEnabled());
+    EXPECT_TRUE(shown.isEnabled());
+    press(Qt::Key_B);
+    EXPECT_TRUE(shown.isChecked()) << "it is seen in the tool bar";
+    QTest::mouseClick(&on_page<QAbstractButton>("brush"), Qt::LeftButton);
+    wait_until([&] { return !shown.isChecked(); });
 }
 
 }  // namespace
