@@ -117,6 +117,14 @@ Smooth smooth_at(const Volume& volume, const Index3& at, int step) {
     return smooth;
 }
 
+/// As many labels as a map without names may have, and the background.
+constexpr std::size_t most_labels = 65;
+
+bool are_labels(std::span<const double> values) {
+    return values.size() > 2 && values.size() <= most_labels && values.front() >= 0 &&
+           std::ranges::all_of(values, [](double value) { return value == std::round(value); });
+}
+
 /// Mean tilt of normals by rounding where a sample is one level above its neighbour [degrees].
 constexpr double tilt_at_slope_1 = 12.6;
 /// Where a sample is so many levels above its neighbour, rounding tilts by two degrees: not felt.
@@ -159,9 +167,11 @@ std::vector<SurfaceSite> sites_of(const VolumePart& part, const SampleBox& core,
 }
 
 std::optional<Terraces> terraces_of(const Volume& volume, const OnProgress& progress) {
-    const std::optional<double> level = level_of(volume, progress);
+    const std::vector<double> values = values_of(volume, progress);
+    const std::optional<double> level = level_of(values, volume.type() != SampleType::float32);
     if (!level) return std::nullopt;
     Terraces terraces;
+    terraces.labels = are_labels(values);
     terraces.level = *level;
     terraces.mask = is_mask(volume.minimum(), volume.maximum(), *level);
     if (terraces.mask) return terraces;

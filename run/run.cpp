@@ -338,14 +338,19 @@ void Run::drop_recording() {
 }
 
 std::int64_t Run::stop_recording(const OnProgress& progress) {
-    if (!recording_) return 0;
+    return end_recording()(progress);
+}
+
+Run::FinishRecording Run::end_recording() {
+    if (!recording_) return [](const OnProgress&) { return std::int64_t{0}; };
     if (servo_) servo_->stop_recording();
     const std::int64_t lost = servo_ ? servo_->report().unrecorded - lost_before_ : 0;
     lost_before_ += lost;
-    const auto recording = std::move(recording_);
     data_->release(recorded_as_);
-    recording->finish(lost, hand_, progress);
-    return recording->ticks(hand_);
+    return [recording = std::move(recording_), lost, hand = hand_](const OnProgress& progress) {
+        recording->finish(lost, hand, progress);
+        return recording->ticks(hand);
+    };
 }
 
 }  // namespace palpate::run

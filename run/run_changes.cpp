@@ -82,6 +82,21 @@ void Run::start_as(Run& before) {
     if (stays_frozen) send(command::Freeze{true});
 }
 
+void Run::start_beside(const Run& first) {
+    if (servo_) throw WrongState("a run starts once");
+    Setup setup = setup_;
+    setup.buttons = first.setup_.buttons;
+    session_settings_ = session_settings(setup, device());
+    setup_ = std::move(setup);
+    const bool other_side = first.field_.solid() != field_.solid();
+    if (other_side) settings_.layers = nullptr;  // their order is that of the side
+    if (other_side || first.field_.interpolation() != field_.interpolation()) {
+        settings_.penetrability = no_penetrability();
+    }
+    field_ = first.field_;
+    start();
+}
+
 void Run::close_device() {
     stop_recording();
     stop();

@@ -47,6 +47,7 @@ nlohmann::ordered_json json_of(const std::optional<filters::Terraces>& terraces)
     const std::string suggestion = dequantize_suggestion(terraces);
     nlohmann::ordered_json json{{"level", terraces->level},
                                 {"mask", terraces->mask},
+                                {"labels", terraces->labels},
                                 {"share", terraces->share},
                                 {"tilt_degrees", terraces->tilt}};
     if (!suggestion.empty()) json["suggestion"] = suggestion;

@@ -20,6 +20,8 @@ void bind_terraces(py::module_& module) {
     py::class_<filters::Terraces>(module, "Terraces", "What rounding does to a volume's surfaces.")
         .def_readonly("level", &filters::Terraces::level, "Distance of levels [data units].")
         .def_readonly("mask", &filters::Terraces::mask, "There are two values only.")
+        .def_readonly("labels", &filters::Terraces::labels,
+                      "The values are so few whole numbers that they may be labels.")
         .def_readonly("share", &filters::Terraces::share,
                       "The part of the surfaces that are terraces, 0 to 1.")
         .def_readonly("tilt", &filters::Terraces::tilt,
@@ -27,8 +29,8 @@ void bind_terraces(py::module_& module) {
         .def_property_readonly("wide", &filters::Terraces::wide, "Worth dequantizing.")
         .def_property_readonly("rounds", &filters::Terraces::rounds, "Rounds that suit them.")
         .def("__repr__", [](const filters::Terraces& t) {
-            return py::str("Terraces(level={}, mask={}, share={:.3g}, tilt={:.3g})")
-                .format(t.level, t.mask, t.share, t.tilt);
+            return py::str("Terraces(level={}, mask={}, labels={}, share={:.3g}, tilt={:.3g})")
+                .format(t.level, t.mask, t.labels, t.share, t.tilt);
         });
 }
 

@@ -58,14 +58,19 @@ double round_length(double most) {
     return power;
 }
 
-/// As people read it: "20 mm", "500 µm".
-std::string in_millimetres(double length) {
+/// A length [mm] as people read it: "20 mm", "500 µm", "10 cm", "2 m".
+std::string words_of(double length) {
+    struct Unit {
+        const char* name;
+        double mm, from;
+    };
+    constexpr Unit units[]{{"km", 1e6, 1e6}, {"m", 1e3, 1e3},           {"cm", 10, 100},
+                           {"mm", 1, 1},     {"\xC2\xB5m", 1e-3, 1e-3}, {"nm", 1e-6, 0}};
+    // Powers of ten are not exact.
+    const auto* unit = std::ranges::find_if(
+        units, [&](const Unit& one) { return length >= (1 - 1e-9) * one.from; });
     char text[32];
-    if (length >= 1) {
-        std::snprintf(text, sizeof text, "%g mm", length);
-    } else {
-        std::snprintf(text, sizeof text, "%g \xC2\xB5m", 1000 * length);
-    }
+    std::snprintf(text, sizeof text, "%g %s", length / unit->mm, unit->name);
     return text;
 }
 
@@ -130,7 +135,7 @@ ScaleBar scale_bar(double width, double pixels_per_mm, double em, double thick) 
     auto shape = vtkSmartPointer<vtkPolyData>::New();
     shape->SetPoints(points);
     shape->SetPolys(polygons);
-    return {shape, in_millimetres(length), right - 0.5 * pixels};
+    return {shape, words_of(length), right - 0.5 * pixels};
 }
 
 }  // namespace palpate::pictures

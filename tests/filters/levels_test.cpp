@@ -53,6 +53,22 @@ TEST(Terraces, are_a_mask_of_two_values) {
     EXPECT_TRUE(terraces->wide());
 }
 
+TEST(Terraces, are_not_what_labels_have) {
+    // Neighbours differ by one or by several, as organs do.
+    Bytes labels;
+    for (int i = 0; i < 24 * 24 * 24; ++i) {
+        const Vec3 at = Vec3(i % 24, i / 24 % 24, i / 576) - Vec3::Constant(11.5);
+        labels.push_back(at.norm() > 10 ? 0 : at.norm() > 6 ? 1 : at[0] < 0 ? 2 : 7);
+    }
+    const auto terraces = terraces_of({Geometry{.size = support::cube(24)}, labels});
+    ASSERT_TRUE(terraces);
+    EXPECT_TRUE(terraces->labels);
+    EXPECT_FALSE(terraces->mask);
+    EXPECT_GT(terraces->share, 0.5) << "what looks like terraces";
+    EXPECT_FALSE(terraces->wide());
+    EXPECT_EQ(reason_to_dequantize(*terraces), "");
+}
+
 TEST(Terraces, are_not_what_noise_or_fine_data_have) {
     const Geometry grid = scenes::centred(support::cube(32));
     EXPECT_FALSE(terraces_of(scenes::noise(grid, SampleType::uint8, 1, 6))->wide());

@@ -1,4 +1,4 @@
-// A run that starts in place of another one.
+// A run that starts in place of another one, or beside it.
 #include <algorithm>
 #include <memory>
 #include <string>
@@ -101,6 +101,28 @@ TEST(StartAs, goes_on_with_what_was_asked_for_there_and_ends_the_run_before) {
         const auto now = other.snapshot();
         return now && now->session.tick.proxy.mode == Mode::constrained;
     }));
+}
+
+TEST(StartBeside, begins_on_the_field_and_with_the_buttons_in_use_by_then) {
+    const auto data = test::stepped_data(test::loaded("synthetic:sphere:32x32x32"));
+    run::Run first(data, soon_warm("5"));
+    first.start();
+    run::Run next(data, soon_warm("5"));
+    run::Run without(data, test::with_device("simulated:hand=hold,depth=5,seconds=60"));
+    const Buttons none{{}, {}}, chosen{UsualButton{}, Button{1}};
+    first.use_buttons(chosen);
+    EXPECT_THROW(without.start_beside(first), std::invalid_argument) << "has no such button";
+    EXPECT_FALSE(without.started());
+    first.use_buttons(none);
+    first.use_field(Solid::below, Interpolation::linear);
+    next.start_beside(first);
+    EXPECT_THROW(next.start_beside(first), WrongState);
+    EXPECT_EQ(next.setup().buttons, none);
+    EXPECT_EQ(next.field().solid(), Solid::below);
+    EXPECT_EQ(next.field().interpolation(), Interpolation::linear);
+    EXPECT_EQ(next.field().background(), first.field().background());
+    next.step();
+    EXPECT_EQ(next.snapshot()->number, 0) << "its only session";
 }
 
 }  // namespace

@@ -1214,6 +1214,10 @@ Das Volumen wird neu gelesen; Änderungen gehen verloren.</translation>
         <source>rounding to levels of %1 makes terraces of %2 % of the surfaces and tilts them by %3 degrees</source>
         <translation>Runden auf Stufen von %1 macht %2 % der Oberflächen zu Terrassen und kippt sie um %3 Grad</translation>
     </message>
+    <message>
+        <source>It is a single slice: the cubic field has holes between samples that are little above the isovalue, the linear one has none.</source>
+        <translation>Es ist eine einzelne Schicht: Das kubische Feld hat Löcher zwischen Samples, die wenig über dem Isowert liegen, das lineare hat keine.</translation>
+    </message>
 </context>
 <context>
     <name>palpate::viewer::LayersControls</name>
@@ -2923,6 +2927,10 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
     <message>
         <source>Preparing to record to %1</source>
         <translation>Die Aufzeichnung in %1 wird vorbereitet</translation>
+    </message>
+    <message>
+        <source>Finishing the recording</source>
+        <translation>Die Aufzeichnung wird abgeschlossen</translation>
     </message>
 </context>
 <context>

@@ -134,15 +134,7 @@ run::Setup Content::setup_with(const devices::DeviceChoice& device) const {
 
 void Content::add_hand(LiveHand&& hand) {
     if (!live() || hands() == most_hands) return;
-    hand.run->start();
-    // They may have been changed since this hand was asked for.
-    const Field& field = live(1)->field();
-    if (hand.run->field().solid() != field.solid() ||
-        hand.run->field().interpolation() != field.interpolation()) {
-        hand.run->use_field(field.solid(), field.interpolation(), field.background());
-    }
-    const run::Buttons& buttons = live(1)->setup().buttons;
-    if (hand.run->setup().buttons != buttons) hand.run->use_buttons(buttons);
+    hand.run->start_beside(*live(1));
     hands_.push_back(std::move(hand));
     choose_hand(hands());
     Q_EMIT device_changed();

@@ -86,7 +86,7 @@ class Content : public QObject {
     /// it feels now.
     run::Setup setup_with(const devices::DeviceChoice& device) const;
     /// One more beside that of a live run, with the same buttons on the same field. It is chosen.
-    /// If it cannot be added, the caller still has it. Throws as run::Run::use_buttons.
+    /// If it cannot be added, the caller still has it. Throws as run::Run::start_beside.
     void add_hand(LiveHand&& hand);
     /// Goes on with this hand in place of the one with the same key, which ends, as
     /// run::Run::start_as(). `closed`, from any thread, once its device is closed, or at once where

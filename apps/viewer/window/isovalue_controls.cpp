@@ -56,8 +56,16 @@ IsovalueControls::IsovalueControls(const Desk& desk)
                 felt ? QString::fromStdString(isovalue_warning(effect_.field(), effect_.isovalue()))
                      : QString());
         });
+    auto* thin = each_time(new Note("one_slice", Note::Kind::plain), [this](Note& note) {
+        const bool smooth = effect_.there() && !layered() &&
+                            effect_.field().interpolation() == Interpolation::cubic;
+        const bool is_slice = smooth && effect_.field().geometry().size.minCoeff() == 1;
+        note.say(is_slice ? tr("It is a single slice: the cubic field has holes between samples "
+                               "that are little above the isovalue, the linear one has none.")
+                          : QString());
+    });
     column_in(this, {chart_, slider, row_of({level_, dequantize_}, 1), make_field(), terraces_,
-                     warning, row_of({make_overruled(), felt_}, 0)})
+                     warning, thin, row_of({make_overruled(), felt_}, 0)})
         ->setSpacing(3);
     connect(chart_, &LevelChart::level_moved, level_, &Quantity::ask);
     connect(&effect_, &Effect::observed, this, [this](const Snapshot& now) {

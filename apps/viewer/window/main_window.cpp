@@ -111,7 +111,7 @@ void MainWindow::build() {
     for (BackgroundTask* task :
          {&files_.reader(), &files_.loader(), &panel_->overlay_controls().loader(), &saver_.task(),
           &panel_->layers_controls().reader(), &panel_->tool_controls().reader(),
-          &panel_->tool_controls().maker(), &recordings_.preparing(),
+          &panel_->tool_controls().maker(), &recordings_.preparing(), &recordings_.ending(),
           &panel_->device_controls().connector().task()}) {
         layout->addWidget(make_progress_strip(*task));
     }
@@ -395,6 +395,7 @@ int MainWindow::finish(const std::function<void()>& forces_ended) {
     constexpr std::chrono::seconds patience{2};
     content_.closer().forces_end_within(patience);
     if (forces_ended) forces_ended();
+    recordings_.finish();
     content_.closer().wait_for_recordings();
     QCoreApplication::sendPostedEvents(&content_, QEvent::MetaCall);  // tells what went wrong
     const bool hangs = !content_.closer().closes_within(patience);

@@ -214,7 +214,12 @@ void MainWindow::make_data_menu() {
     };
     actions_.add(
         menu,
-        {{"brush_action", tr("&Brush at the probe"), "B", [&brush] { brush.toggle(); }, if_live_},
+        {{"brush_action", tr("&Brush at the probe"), "B",
+          [this, &brush](bool) {
+              brush.toggle();
+              actions_.refresh();
+          },
+          if_live_, [&brush] { return brush.choice().on; }},
          {"undo_action", tr("&Undo"), QKeySequence::Undo, [&brush] { brush.undo(); }, editable},
          {"redo_action", tr("&Redo"), "Ctrl+Shift+Z", [&brush] { brush.redo(); }, editable},
          {"save_volume", tr("&Save the volume…"), "Ctrl+Shift+S", [this] { saver_.ask_save(); },

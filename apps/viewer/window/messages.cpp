@@ -7,9 +7,11 @@
 #include <QMessageBox>
 #include <QProgressBar>
 #include <QPushButton>
+#include <QRegularExpression>
 #include <QTimer>
 
 #include <cstdio>
+#include <thread>
 #include <utility>
 
 #include "apps/viewer/panel/layout.hpp"
@@ -50,11 +52,22 @@ bool Messages::may_lose(const char* name, const QString& question, const QString
     return answer == QMessageBox::Discard;
 }
 
+namespace {
+
+/// With places at which a long name can go on in the next line.
+QString breakable(QString text) {
+    const QRegularExpression part("(\\S{40}\\S*?[-_/.])(?=\\S)");
+    return text.replace(part, QString("\\1%1").arg(QChar(0x200b)));
+}
+
+}  // namespace
+
 void Messages::show_problem(const QString& what, int status) {
     problem_ = what;
     problem_status_ = status;
     std::fprintf(stderr, "palpate: %s\n", what.toLocal8Bit().constData());
-    auto* box = new QMessageBox(QMessageBox::Warning, "Palpate", what, QMessageBox::Ok, window_);
+    auto* box =
+        new QMessageBox(QMessageBox::Warning, "Palpate", breakable(what), QMessageBox::Ok, window_);
     box->setObjectName("problem");
     box->setTextFormat(Qt::PlainText);  // also of a file with a name like "<b>"
     box->setTextInteractionFlags(Qt::TextSelectableByMouse);
@@ -93,6 +106,16 @@ void BackgroundTask::abandon() {
     worker_.reset();
     then_ = nullptr;
     Q_EMIT ended();
+}
+
+void BackgroundTask::end_within(std::chrono::milliseconds time) {
+    constexpr std::chrono::milliseconds between_looks{2};
+    const auto latest = std::chrono::steady_clock::now() + time;
+    while (worker_ && !worker_->ended() && std::chrono::steady_clock::now() < latest) {
+        std::this_thread::sleep_for(between_looks);
+    }
+    if (worker_ && worker_->ended()) look();
+    abandon();
 }
 
 /// Not for what is done at once: the strip makes the views smaller, which draws them anew.

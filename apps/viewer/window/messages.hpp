@@ -5,6 +5,7 @@
 #include <QObject>
 #include <QString>
 
+#include <chrono>
 #include <functional>
 #include <memory>
 
@@ -74,6 +75,8 @@ class BackgroundTask : public QObject {
     void cancel();
     /// Stops the task and waits for its thread.
     void abandon();
+    /// Waits for the task, at most for this time, and then abandons it.
+    void end_within(std::chrono::milliseconds time);
     bool busy() const { return worker_ != nullptr; }
 
   Q_SIGNALS:

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <exception>
 #include <filesystem>
 #include <memory>
@@ -20,7 +21,7 @@
 namespace palpate::viewer {
 
 RecordingController::RecordingController(const Desk& desk)
-    : Controller(desk), preparing_(messages_) {
+    : Controller(desk), preparing_(messages_), ending_(messages_) {
     connect(&content_, &Content::closing, this, [this] {
         preparing_.abandon();
         if (recording()) recorded_ = std::max(0.0, seconds() - began_);
@@ -85,26 +86,38 @@ void RecordingController::stop() {
     preparing_.abandon();
     if (!recording()) return;
     records_ = false;
-    messages_.guarded([&] {
-        const int before = std::exchange(exit_status_, app::bad_output);  // unless it is whole
-        recorded_ = std::max(0.0, seconds() - began_);
-        std::exception_ptr lost;
-        for (int hand = 1; hand <= content_.hands(); ++hand) {
-            try {
-                content_.live(hand)->stop_recording();
-            } catch (const io::OutputError&) {
-                lost = std::current_exception();
+    const double recorded = std::max(0.0, seconds() - began_);
+    const int before = std::exchange(exit_status_, app::bad_output);  // unless it is whole
+    std::vector<run::Run::FinishRecording> hands;
+    for (int hand = 1; hand <= content_.hands(); ++hand) {
+        hands.push_back(content_.live(hand)->end_recording());
+    }
+    ending_.start(
+        tr("Finishing the recording"),
+        [hands](const io::Progress& progress) {
+            std::exception_ptr lost;
+            for (const auto& finish : hands) {
+                try {
+                    finish([&](double) { progress(0); });
+                } catch (...) {  // also of `progress`
+                    lost = std::current_exception();
+                }
             }
-        }
-        if (lost) std::rethrow_exception(lost);
-        tell_recorded();
-        exit_status_ = before;
-    });
+            if (lost) std::rethrow_exception(lost);
+        },
+        [this, before, recorded] {
+            tell_recorded(recorded);
+            exit_status_ = before;
+        });
     Q_EMIT changed();
 }
 
-void RecordingController::tell_recorded() {
-    messages_.show_done(tr("Recorded %1 s").arg(recorded_, 0, 'f', 1));
+void RecordingController::finish() {
+    ending_.end_within(std::chrono::milliseconds(500));
+}
+
+void RecordingController::tell_recorded(double seconds) {
+    messages_.show_done(tr("Recorded %1 s").arg(seconds, 0, 'f', 1));
 }
 
 /// With the runs, their recording ended.
@@ -113,7 +126,7 @@ void RecordingController::tell_runs_ended(const RunCloser::Ended& how) {
         exit_status_ = app::bad_output;
         messages_.show_problem(QString::fromStdString(how.lost), exit_status_);
     } else if (how.recorded && recorded_ > 0) {
-        tell_recorded();
+        tell_recorded(recorded_);
     }
     recorded_ = 0;
     Q_EMIT changed();

@@ -28,9 +28,14 @@ class RecordingController : public Controller {
     /// In the background, until there is a checksum of the volume and a pipe has a reader. Errors
     /// are shown.
     void start(const QString& path);
+    /// At once. What is left is written in the background, for as long as the reader of a pipe
+    /// takes or until it is cancelled.
     void stop();
     BackgroundTask& preparing() { return preparing_; }
-    bool settled() const { return !preparing_.busy(); }
+    BackgroundTask& ending() { return ending_; }
+    bool settled() const { return !preparing_.busy() && !ending_.busy(); }
+    /// The program ends: a reader has half a second for a recording that was stopped.
+    void finish();
     bool recording() const { return writer() != nullptr; }
     /// Ends a recording that cannot be written any more, which shows why, and tells of one that has
     /// ended otherwise; twice a second.
@@ -46,15 +51,15 @@ class RecordingController : public Controller {
     void begin(const QString& path);
     void tell_playback();
     void tell_end();
-    void tell_recorded();
+    void tell_recorded(double seconds);
     void tell_runs_ended(const RunCloser::Ended& how);
     double seconds() const;
 
-    BackgroundTask preparing_;
+    BackgroundTask preparing_, ending_;
     bool records_ = false;  // as far as the person knows
     int exit_status_ = 0;
     double began_ = 0;     // [s] of the run
-    double recorded_ = 0;  // [s] in the recording that was stopped, or ends with its run
+    double recorded_ = 0;  // [s] in the recording that ends with its run
 };
 
 class TimelineController : public Controller {

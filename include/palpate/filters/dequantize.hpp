@@ -24,6 +24,9 @@ inline constexpr int most_rounds = 1000;
 struct Terraces {
     double level = 1;   ///< distance between levels [data units]
     bool mask = false;  ///< two values only: every surface is made of stair steps
+    /// From three to 65 values, all of them whole numbers from 0 on, as label maps have them. There
+    /// is no smooth field below labels.
+    bool labels = false;
     /// The part of the surfaces of all isovalues that are terraces: gentle slopes on which the
     /// samples differ from a smooth field by no more than rounding explains. 0 to 1.
     double share = 0;
@@ -32,7 +35,7 @@ struct Terraces {
     double tilt = 0;
 
     /// Worth dequantizing.
-    bool wide() const { return mask || share >= 0.5; }
+    bool wide() const { return mask || (share >= 0.5 && !labels); }
     /// Suitable number of rounds: stair steps are higher and need more.
     int rounds() const { return mask ? 160 : 40; }
 };

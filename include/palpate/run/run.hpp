@@ -62,6 +62,10 @@ class Run {
     /// there. Throws as make_renderer(), and as use_buttons() for a button that this device does
     /// not have. `before` then continues. If it was being recorded, the recording may have ended.
     void start_as(Run& before);
+    /// The same as a further hand beside `first`, a run on the same data: on the field and with the
+    /// buttons that are in use there by now. If it throws, also as use_buttons(), it is not
+    /// started.
+    void start_beside(const Run& first);
     bool started() const { return servo_ != nullptr; }  ///< also after stop()
     /// On data with Pace::by_steps, whose servo has no thread: computes one tick, a period after
     /// the one before, and does the work that is due for the data and the recording. The same steps
@@ -152,6 +156,10 @@ class Run {
     /// recording. Throws io::OutputError if something could not be written. A pipe's reader that
     /// reads slowly is waited for until `progress` throws, or for half a second without it.
     std::int64_t stop_recording(const OnProgress& progress = {});
+    /// The same in two parts, for a thread that must not wait: nothing more is recorded. The
+    /// result, called once and on any thread, writes the rest and finishes the recording.
+    using FinishRecording = std::function<std::int64_t(const OnProgress& progress)>;
+    FinishRecording end_recording();
     /// Null unless a recording is running.
     const io::RecordingWriter* recording() const { return recording_.get(); }
 

@@ -5,6 +5,7 @@
 #include "apps/viewer/scene/surface_maker.hpp"
 #include "palpate/edit.hpp"
 #include "palpate/scenes/volumes.hpp"
+#include "pictures/vtk/props.hpp"
 #include "support/fields.hpp"
 #include "viewer/scene/shown_scene.hpp"
 
@@ -35,6 +36,22 @@ struct Torus : ShownScene {
         return snapshot;
     }
 };
+
+TEST(ScaleBar, has_the_unit_that_a_person_would_use) {
+    const auto words = [](double mm) {
+        return pictures::scale_bar(1000, 220 / (1.01 * mm), 12, 1).text;
+    };
+    EXPECT_EQ(words(5e6), "5 km");
+    EXPECT_EQ(words(5e4), "50 m");
+    EXPECT_EQ(words(1e3), "1 m");
+    EXPECT_EQ(words(500), "50 cm");
+    EXPECT_EQ(words(100), "10 cm");
+    EXPECT_EQ(words(50), "50 mm");
+    EXPECT_EQ(words(1), "1 mm");
+    EXPECT_EQ(words(0.5), "500 \xC2\xB5m");
+    EXPECT_EQ(words(1e-3), "1 \xC2\xB5m");
+    EXPECT_EQ(words(5e-4), "500 nm");
+}
 
 TEST(DrawnLooks, show_a_surface_with_probe_proxy_spring_and_force) {
     Torus shown{Look()};

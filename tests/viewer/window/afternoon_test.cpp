@@ -120,6 +120,7 @@ void DrawnAfternoon::record_and_replay() {
     wait_until([&] { return part<QLabel>("recording_clock").isVisible(); });
     show("recording");
     press(Qt::Key_R, Qt::ControlModifier);
+    wait_until([&] { return window_->recordings().settled(); });
     open(scratch("stroke.csv"));
     wait_until([&] { return window_->playback() != nullptr; });
     EXPECT_EQ(window_->playback()->different(), 0U);

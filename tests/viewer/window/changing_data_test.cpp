@@ -226,7 +226,7 @@ TEST_F(ChangingData, a_recording_of_edits_is_played_with_them) {
     carve();
     const auto carved = work().samples;
     wait_until([&] { return now().session.version == work().version; });  // it is recorded, then
-    window_->recordings().stop();
+    stop_recording();
     window_->files().open_path(scratch("carving.csv"));
     wait_until([&] { return window_->playback() != nullptr; });
     EXPECT_EQ(window_->playback()->different(), 0U);
@@ -260,11 +260,17 @@ TEST_F(ChangingData, a_sequence_plays_steps_and_is_sought_with_the_timeline) {
     EXPECT_TRUE(window_->statusBar()->currentMessage().contains("cannot be edited"));
     EXPECT_TRUE(window_->statusBar()->toolTip().contains("cannot be edited"));
     EXPECT_FALSE(window_->panel().brush_controls().choice().on);
+    const auto& shown = part<QAction>("brush_action");
+    EXPECT_FALSE(shown.isChecked());
     press(Qt::Key_K);
     wait_until([&] { return now().speed == 1; });
     feel("synthetic:sphere:32x32x32");
     EXPECT_FALSE(window_->timeline().isVisible());
-    EXPECT_TRUE(part<QAction>("brush_action").isEnabled());
+    EXPECT_TRUE(shown.isEnabled());
+    press(Qt::Key_B);
+    EXPECT_TRUE(shown.isChecked()) << "it is seen in the tool bar";
+    QTest::mouseClick(&on_page<QAbstractButton>("brush"), Qt::LeftButton);
+    wait_until([&] { return !shown.isChecked(); });
 }
 
 }  // namespace

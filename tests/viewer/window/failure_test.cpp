@@ -27,7 +27,7 @@ TEST_F(Failures, an_unavailable_device_is_reported_wherever_it_is_requested) {
     feel(sphere);
     record("a.csv");
     wait_until([&] { return window_->live()->recording()->ticks() > 50; });
-    window_->recordings().stop();
+    stop_recording();
     window_.reset();
     open_window("recorded:file=missing.csv");
     window_->files().open_path(scratch("a.csv"));
@@ -87,7 +87,7 @@ TEST_F(Failures, leaving_a_recording_keeps_level_and_view) {
     wait_until([&] { return now().session.tick.proxy.isovalue == 110; });
     record("a.csv");
     wait_until([&] { return window_->live()->recording()->ticks() > 50; });
-    window_->recordings().stop();
+    stop_recording();
     window_->files().open_path(scratch("a.csv"));
     wait_until([&] { return window_->playback() != nullptr; });
     wait_until_settled();
@@ -146,7 +146,7 @@ TEST_F(Failures, a_pipe_without_a_reader_holds_up_neither_the_window_nor_the_rec
     });
     wait_until([&] { return window_->recordings().recording(); });
     wait_until([&] { return window_->live()->recording()->ticks() > 50; });
-    window_->recordings().stop();
+    stop_recording();
     reader.join();
     EXPECT_GT(std::ranges::count(text, '\n'), 50);
     EXPECT_EQ(window_->messages().problem(), "");
@@ -156,7 +156,7 @@ TEST_F(Failures, opening_what_is_open_gives_up_what_is_being_loaded) {
     feel(sphere);
     record("a.csv");
     wait_until([&] { return window_->live()->recording()->ticks() > 50; });
-    window_->recordings().stop();
+    stop_recording();
     window_->files().open_volume(run::source_named("synthetic:noise:200x200x200"));
     window_->files().open_path(scratch("a.csv"));
     wait_until([&] { return window_->playback() != nullptr; });

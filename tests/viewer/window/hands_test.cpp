@@ -121,7 +121,7 @@ TEST_F(TwoHands, one_recording_has_both_and_is_played_with_both) {
     for (const int hand : {1, 2}) {
         wait_until([&] { return content().live(hand)->recording()->ticks(hand) > 600; });
     }
-    window_->recordings().stop();
+    stop_recording();
     EXPECT_FALSE(window_->recordings().recording());
     EXPECT_EQ(window_->recordings().exit_status(), 0);
     window_->files().open_path(scratch("both.csv"));
@@ -165,7 +165,7 @@ TEST_F(TwoHands, feel_their_own_layers_again_after_a_recording) {
     for (const int hand : {1, 2}) {
         wait_until([&] { return content().live(hand)->recording()->ticks(hand) > 100; });
     }
-    window_->recordings().stop();
+    stop_recording();
     window_->files().open_path(scratch("layers.csv"));
     wait_until([&] { return window_->playback() != nullptr; });
     press(Qt::Key_N);

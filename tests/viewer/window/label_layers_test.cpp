@@ -191,7 +191,7 @@ TEST_F(LabelsInWindow, a_recording_is_played_with_them) {
     record("a.csv");
     EXPECT_EQ(window_->live()->isovalue(), level);
     ASSERT_TRUE(press_until_on("shell"));
-    window_->recordings().stop();
+    stop_recording();
     window_->files().open_path(scratch("a.csv"));
     wait_until([&] { return window_->playback() != nullptr; });
     EXPECT_EQ(window_->playback()->different(), 0U);

@@ -206,7 +206,7 @@ TEST_F(LayersInWindow, a_recording_names_the_layers_that_were_felt) {
     wait_until_settled();
     record("a.csv");
     ASSERT_TRUE(press_until([&] { return now().session.tick.layers.touched == 0; }, finely));
-    window_->recordings().stop();
+    stop_recording();
     window_->files().open_path(scratch("a.csv"));
     wait_until([&] { return window_->playback() != nullptr; });
     EXPECT_EQ(window_->playback()->different(), 0U);

@@ -55,6 +55,7 @@ struct Driver {
     Gate opens, reads, stops, closes;
     std::atomic<bool> keeps_force{false};
     std::atomic<int> open{0}, opened{0};  // now; ever
+    std::atomic<int> sessions{0};         // whose clocks began
 };
 
 /// The one device that this driver has.
@@ -78,6 +79,7 @@ class Driven final : public Device {
         return info;
     }
     DeviceReading read(double time) override {
+        if (time <= std::exchange(last_, time)) ++driver_.sessions;
         driver_.reads.pass();
         return device_->read(time);
     }
@@ -92,6 +94,7 @@ class Driven final : public Device {
     Driver& driver_;
     const devices::Claim claim_;
     const std::unique_ptr<Device> device_;
+    double last_ = std::numeric_limits<double>::infinity();
 };
 
 class SlowDevices : public InWindow {
@@ -255,7 +258,7 @@ TEST_F(SlowDevices, have_the_buttons_that_were_chosen_while_they_were_connected)
     EXPECT_EQ(window_->live()->setup().buttons, chosen);
     record("with-button.csv");
     wait_for_ticks(5);
-    window_->recordings().stop();
+    stop_recording();
     std::ifstream file(scratch("with-button.csv").toStdString());
     const std::string text(std::istreambuf_iterator<char>(file), {});
     EXPECT_NE(text.find("\"deadman_buttons\": 1,"), std::string::npos);
@@ -278,13 +281,15 @@ TEST_F(SlowDevices, that_are_added_feel_as_the_first_hand_does_by_then) {
     EXPECT_EQ(added.field().interpolation(), Interpolation::linear);
     EXPECT_EQ(added.field().background(), window_->content().live(1)->field().background());
     EXPECT_EQ(added.setup().buttons, (run::Buttons{{}, {}}));
+    wait_for_ticks(5);
+    EXPECT_EQ(driver_.sessions, 1) << "no force of the side that was solid before";
 }
 
 TEST_F(SlowDevices, are_not_waited_for_by_what_is_opened_instead) {
     feel_with("simulated:hand=hold");
     record("a.csv");
     wait_for_ticks(50);
-    window_->recordings().stop();
+    stop_recording();
     for (const auto open : {&Connector::use_device, &Connector::add_hand}) {
         begin_to(open, "haply");
         window_->files().open_recording(scratch("a.csv"));
@@ -396,6 +401,47 @@ TEST_F(SlowDevices, a_slow_reader_of_a_recording_does_not_keep_the_window_open) 
     EXPECT_EQ(window_->finish(), 0);
     reader.join();
     EXPECT_NE(reader.text.find("\n# end "), std::string::npos) << "the recording is complete";
+}
+
+TEST_F(SlowDevices, a_slow_reader_does_not_keep_a_recording_from_being_stopped) {
+    feel_with("simulated:hand=hold");
+    const std::string pipe = scratch("pipe").toStdString();
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    SlowReader reader(pipe);
+    record("pipe");
+    wait_for_ticks(600);  // more than a pipe holds
+    press(Qt::Key_R, Qt::ControlModifier);
+    EXPECT_FALSE(window_->recordings().recording());
+    const std::int64_t stopped = now().number;
+    wait_for_ticks(700);  // longer than the end of a program would wait for it
+    EXPECT_GE(now().number, stopped + 700) << "the session goes on";
+    EXPECT_NE(late_strip(), nullptr);
+    reader.gate.open();
+    wait_until([&] { return window_->recordings().settled(); });
+    reader.join();
+    EXPECT_NE(reader.text.find("\n# end "), std::string::npos) << "the recording is complete";
+    EXPECT_LT(std::ranges::count(reader.text, '\n'), stopped + 300)
+        << "and ended when it was asked";
+    window_->close();
+    EXPECT_EQ(window_->finish(), 0);
+}
+
+TEST_F(SlowDevices, a_slow_reader_of_a_stopped_recording_can_be_given_up) {
+    feel_with("simulated:hand=hold");
+    const std::string pipe = scratch("pipe").toStdString();
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    SlowReader reader(pipe);
+    record("pipe");
+    wait_for_ticks(600);  // more than a pipe holds
+    press(Qt::Key_R, Qt::ControlModifier);
+    late_strip();
+    cancel_task();
+    wait_until([&] { return window_->recordings().settled(); });
+    reader.gate.open();
+    reader.join();
+    EXPECT_EQ(reader.text.find("\n# end "), std::string::npos);
+    window_->close();
+    EXPECT_EQ(window_->finish(), 5) << "the recording is not whole";
 }
 
 TEST_F(SlowDevices, a_reader_that_is_given_up_does_not_keep_the_next_recording_from_its_ticks) {

@@ -202,7 +202,7 @@ TEST_F(StreamingEdits, by_hand_are_recorded_and_played) {
     editor().apply(edit::Fill{{{20, 70, 60}, {40, 100, 110}}, 0});
     look();
     save("carved");
-    window_->recordings().stop();
+    stop_recording();
     undo_all();
     window_->files().open_path(scratch("carving.csv"));
     wait_until([&] { return window_->playback() != nullptr; });

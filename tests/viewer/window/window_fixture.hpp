@@ -140,6 +140,11 @@ class InWindow : public testing::Test {
         window_->recordings().start(scratch(name));
         viewer::wait_until([this] { return window_->recordings().settled(); });
     }
+    /// Until the recording is complete.
+    void stop_recording() {
+        window_->recordings().stop();
+        viewer::wait_until([this] { return window_->recordings().settled(); });
+    }
     /// Opens a volume and waits until it is felt.
     void feel(const std::string& name) {
         window_->files().open_path(QString::fromStdString(name));

@@ -31,7 +31,7 @@ TEST_F(WordsInWindow, over_a_recording_tell_how_to_leave_it) {
     feel("synthetic:sphere:24x24x24");
     record("a.csv");
     wait_for_ticks(20);
-    window_->recordings().stop();
+    stop_recording();
     window_->files().open_path(scratch("a.csv"));
     wait_until([&] { return window_->playback() != nullptr; });
     auto& hint = part<QLabel>("hint");
@@ -42,6 +42,21 @@ TEST_F(WordsInWindow, over_a_recording_tell_how_to_leave_it) {
     press(Qt::Key_Escape);
     wait_until(
         [&] { return window_->live() && !(hint.isVisible() && hint.text().contains("Esc")); });
+}
+
+TEST_F(WordsInWindow, of_a_problem_are_all_seen_however_long_a_name_is) {
+    const QString name = "/data/" + QString("series_of_a_patient-T1w.").repeated(12) + "nrrd";
+    window_->files().open_path(name);
+    wait_until([&] { return !window_->messages().problem().isEmpty(); });
+    EXPECT_TRUE(window_->messages().problem().startsWith(name + ":"));
+    const auto& box = part<QMessageBox>("problem");
+    for (const auto* label : box.findChildren<QLabel*>()) {
+        if (label->text().isEmpty()) continue;
+        EXPECT_EQ(label->text().remove(QChar(0x200b)), window_->messages().problem());
+        const QRect seen = label->fontMetrics().boundingRect(QRect(0, 0, label->width(), 10000),
+                                                             Qt::TextWordWrap, label->text());
+        EXPECT_LE(seen.width(), label->width());
+    }
 }
 
 TEST_F(WordsInWindow, suggest_the_name_of_the_volume_for_its_surface) {
