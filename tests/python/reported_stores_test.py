@@ -3,6 +3,7 @@
 import functools
 import http.server
 import json
+import pathlib
 import struct
 import threading
 
@@ -58,7 +59,8 @@ def test_blanks_anywhere_in_an_address_are_escaped(tmp_path, served, name, query
 
 @pytest.mark.parametrize("address, words", (
     ("file:///data/a.zarr", "give the path alone"), ("gs://bucket/a.zarr", "https://storage.googleapis.com/BUCKET/NAME"),
-    ("ftp://host/a.zarr", "begins with none of http://")))
+    ("ftp://host/a.zarr", "begins with none of http://"), (pathlib.Path("http://host/a.zarr"), "give it as text"),
+    (pathlib.Path("s3://bucket/a.zarr"), "give it as text")))
 def test_an_address_of_another_kind_is_refused_with_the_way_to_write_it(address, words):
     refused_store(address, words)
 
