@@ -2,6 +2,8 @@
 // stream/ and run/.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <istream>
 #include <optional>
@@ -16,14 +18,14 @@ struct TiffPeek {
     bool has_levels = false;  ///< coarser ones, in SubIFDs
 };
 
-/// .tif or .tiff.
+/// .tif, .tiff, or those of OME-TIFF above 4 GB.
 inline bool is_tiff_name(const std::filesystem::path& path) {
     const std::string extension = lower(path.extension().string());
-    return extension == ".tif" || extension == ".tiff";
+    constexpr std::array names = {".tif", ".tiff", ".tf2", ".tf8", ".btf"};
+    return std::ranges::find(names, extension) != names.end();
 }
 
-/// Nothing if the name does not end in .tif or .tiff or the file does not begin as such a file
-/// does.
+/// Nothing if the name is not that of TIFF or the file does not begin as such a file does.
 std::optional<TiffPeek> peek_tiff(const std::filesystem::path& path);
 
 /// The same for what a stream holds, whatever its name.

@@ -83,6 +83,21 @@ std::string owner_of_data(const fs::path& path, std::string_view extension, bool
     return is_own ? std::string() : data.filename().string();
 }
 
+/// The header of two files names the one with the samples, in a line of text.
+std::string why_not_in_header(const std::string& stem, std::string_view extension) {
+    if (extension != ".nhdr" && extension != ".mhd") return {};
+    const std::string one_file = extension == ".nhdr" ? ": name it .nrrd" : ": name it .mha";
+    if (extension == ".mhd" && stem.find('%') != std::string::npos) {
+        return ": in a .mhd, % stands for numbered files" + one_file;
+    }
+    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; };
+    const bool has_colon = extension == ".nhdr" && stem.find(':') != std::string::npos;
+    if (!has_colon && !stem.starts_with(' ') && std::ranges::none_of(stem, is_control)) return {};
+    return ": a " + std::string(extension) +
+           " cannot name a file of samples that begins with a blank or contains a line end" +
+           (extension == ".nhdr" ? " or a colon" : "") + one_file;
+}
+
 }  // namespace
 
 fs::path data_file_of(const fs::path& path, bool compress) {
@@ -114,8 +129,8 @@ std::string why_not_written(const fs::path& path, const Geometry& geometry, bool
     if (extension.starts_with(".nii") && geometry.size.maxCoeff() > 32767) {
         return path.string() + ": NIfTI holds at most 32767 samples along an axis: name it .nrrd";
     }
-    if (extension == ".mhd" && path.stem().string().find('%') != std::string::npos) {
-        return path.string() + ": in a .mhd, % stands for numbered files: name it .mha";
+    if (const std::string why = why_not_in_header(path.stem().string(), extension); !why.empty()) {
+        return path.string() + why;
     }
     const bool placed =
         geometry.origin != Vec3::Zero() || geometry.direction != Eigen::Matrix3d::Identity();

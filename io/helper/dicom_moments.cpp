@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace palpate::io {
 namespace {
@@ -91,9 +92,20 @@ class Moments {
         for (auto& group : groups_) std::ranges::stable_sort(group, before);
     }
 
+    /// A frame's number counts after its dimensions: in several files, frames at every place may
+    /// have the same numbers by chance.
+    Keys keys_in_order() const {
+        Keys keys(keys_);
+        std::iota(keys.begin(), keys.end(), std::size_t{0});
+        if (keys_ > first_dimension) {
+            std::rotate(keys.begin() + frame_number, keys.begin() + first_dimension, keys.end());
+        }
+        return keys;
+    }
+
     bool sort_by_shared_keys() {
         Keys keys;
-        for (std::size_t key = 0; key < keys_; ++key) {
+        for (const std::size_t key : keys_in_order()) {
             if (!is_given(key)) continue;
             keys.push_back(key);
             const auto first = values(groups_.front(), keys);

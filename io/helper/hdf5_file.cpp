@@ -75,6 +75,21 @@ double fill_of(hid_t properties) {
     return fill;
 }
 
+/// Refuses arrays that grow along one axis other than the first, in files of HDF5's newer format:
+/// for these, libhdf5 1.10 tells the places of other chunks.
+void check_index(hid_t data, hid_t space, const std::string& path) {
+    H5D_chunk_index_t index = H5D_CHUNK_IDX_BTREE;
+    hsize_t most[3] = {};
+    if (H5Dget_chunk_index_type(data, &index) < 0 ||
+        H5Sget_simple_extent_dims(space, nullptr, most) != 3) {
+        throw Failure("is damaged; copy it again");
+    }
+    if (index != H5D_CHUNK_IDX_EARRAY || most[0] == H5S_UNLIMITED) return;
+    throw Failure(named(path) +
+                  " can grow along an axis other than the first, in HDF5's newer format, which is "
+                  "not read; copy it with h5repack, or write it with libver='earliest'");
+}
+
 bool is_hdf5(const std::filesystem::path& path) {
     if (!is_far()) return H5Fis_hdf5(path.c_str()) > 0;
     constexpr std::string_view signature = "\x89HDF\r\n\x1a\n";
@@ -227,6 +242,7 @@ ImageArray Hdf5File::array(const std::string& path) const {
             H5Pget_chunk_opts(properties, &options) < 0 || options != 0) {
             throw Failure(named(path) + " has chunks of a kind that is not read");
         }
+        check_index(data, space, path);
         array.codecs = codecs_of(properties, size_of(*stored));
     } else if (H5Pget_layout(properties) != H5D_CONTIGUOUS ||
                H5Pget_external_count(properties) != 0) {

@@ -126,7 +126,7 @@ const char* program_for_file(const fs::path& path) {
     if (fs::is_directory(path)) return program_for_folder(path);
     const std::string extension = extension_of(path);
     if (extension == ".vti") return vtk;
-    if (extension == ".tif" || extension == ".tiff") return images;
+    if (is_tiff_name(path)) return images;
     if (has_dicom_name(path) || begins_as_dicom(path)) return dicom;
     if (begins_as_tiff(path)) return images;
     if (extension.starts_with(".hdr") || extension.starts_with(".img")) {

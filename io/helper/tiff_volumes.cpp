@@ -30,6 +30,11 @@ void check_deflate(TIFF* tiff, const fs::path& file, std::uint32_t piece, bool t
     const tmsize_t got = tiled ? TIFFReadRawTile(tiff, piece, raw.data(), size)
                                : TIFFReadRawStrip(tiff, piece, raw.data(), size);
     if (got != size) fail_damaged_tiff(file);
+    std::uint16_t order = FILLORDER_MSB2LSB;
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_FILLORDER, &order);
+    if (order == FILLORDER_LSB2MSB) {
+        TIFFReverseBits(reinterpret_cast<std::uint8_t*>(raw.data()), size);
+    }
     try {
         const auto most =
             static_cast<std::uint64_t>(tiled ? TIFFTileSize64(tiff) : TIFFStripSize64(tiff));

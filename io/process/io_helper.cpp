@@ -1,6 +1,8 @@
 // Shared by all jobs of palpate-io-helper. See the header.
 #include "io/process/io_helper.hpp"
 
+#include <algorithm>
+#include <array>
 #include <fstream>
 #include <iterator>
 #include <system_error>
@@ -66,6 +68,14 @@ void check_readable(const fs::path& path) {
              : name.starts_with("gs:")
                  ? "; Google's storage is read as https://storage.googleapis.com/BUCKET/NAME"
                  : ""));
+    }
+    constexpr std::array one_slash = {"http:/", "https:/", "s3:/"};
+    if (status.type() == fs::file_type::not_found &&
+        std::ranges::any_of(one_slash,
+                            [&](const char* begin) { return name.starts_with(begin); })) {
+        throw InputError(name +
+                         ": an address has two slashes behind the colon, of which pathlib.Path "
+                         "takes one away; give it as text");
     }
     if (status.type() == fs::file_type::not_found) {
         throw InputError(name + ": does not exist; check the name");

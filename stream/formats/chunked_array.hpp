@@ -25,9 +25,10 @@ namespace palpate::stream {
 /// A file in which arrays look up their chunks, one thread at a time. Others wait until it is their
 /// turn or they are stopped.
 struct LocatedFile {
-    explicit LocatedFile(io::ChunkFile of) : file(std::move(of)) {}
-    io::ChunkFile file;
+    LocatedFile(io::ChunkFile of, std::string name) : file(std::move(of)), key(std::move(name)) {}
+    io::ChunkFile file;  ///< its path is for messages and may be shortened
     UnpackingRoom turn{1};
+    std::string key;  ///< among the objects of its folder
 };
 
 /// Groups of chunks. One index tells where each chunk of a group lies in its object.

@@ -16,10 +16,12 @@ namespace {
 constexpr std::uint64_t bytes_of_head = 64;
 /// Chunks along each axis whose places are looked up together.
 constexpr std::int64_t page_side = 16;
+/// Its chunks are parts of one file: without it, they are not missing ones with the fill value.
+constexpr const char* gone = ": is gone since it was opened; put it back, or open it again";
 
 ChunkedArray located_array(const io::ImageArray& level, const std::shared_ptr<LocatedFile>& file) {
     ChunkedArray array;
-    array.folder = file->file.path().filename().string();
+    array.folder = file->key;
     array.bytes.stored = level.stored;
     array.bytes.swapped = level.swapped;
     array.bytes.values = level.values;
@@ -43,8 +45,8 @@ ChunkedArray located_array(const io::ImageArray& level, const std::shared_ptr<Lo
     return array;
 }
 
-/// The one file of a store, in its folder. Once opened, it must stay as it is: places from an old
-/// file would give wrong samples of a new one.
+/// The one file of a store, in its folder. Once opened, it must stay there and as it is: places
+/// from an old file would give wrong samples of a new one.
 class SteadyFile : public Objects {
   public:
     SteadyFile(std::shared_ptr<const Objects> folder, const std::string& name, std::uint64_t size,
@@ -71,7 +73,8 @@ class SteadyFile : public Objects {
         // Several servers behind one address may not agree on the identity.
         for (int attempt = 0; attempt < 3; ++attempt) {
             auto bytes = folder_->get(same, stop);
-            if (!bytes || identity == identity_) return bytes;
+            if (!bytes) throw io::InputError(name_of(wanted.key) + gone);
+            if (identity == identity_) return bytes;
             same.again = true;
         }
         throw io::InputError(name_of(wanted.key) +
@@ -133,14 +136,14 @@ std::shared_ptr<const Store> open_located(const std::stop_token& stop,
                               const std::stop_token& until) {
             auto part = folder->get(
                 {.key = name, .range = ByteRange{offset, length}, .lasting = true}, until);
-            if (!part || part->size() != length) {
-                throw io::InputError(folder->name_of(name) + ": is gone, or shorter than it was");
+            if (part->size() != length) {
+                throw io::InputError(folder->name_of(name) + ": is shorter than it was");
             }
             return *std::move(part);
         };
     }
     const auto file = std::make_shared<LocatedFile>(
-        io::ChunkFile(address, *size, std::move(read), memory_of_helper(options)));
+        io::ChunkFile(address, *size, std::move(read), memory_of_helper(options)), name);
     const io::ChunkedImage image = file->file.describe(options.channel, options.time, stop);
     return about(address, [&] {
         return chunked_store(std::move(folder), located_volume(image, file, options),

@@ -13,20 +13,29 @@
 namespace palpate::stream {
 namespace {
 
-/// A key as it stands in a URL.
-std::string escaped(const std::string& key) {
-    static constexpr std::string_view plain = "-._~/";
+/// A key in a URL, all characters escaped but those that stay.
+std::string escaped(const std::string& key, bool (*stays)(char c)) {
     static constexpr std::string_view digits = "0123456789ABCDEF";
     std::string text;
     for (const char c : key) {
         const auto byte = static_cast<unsigned char>(c);
-        if (std::isalnum(byte) != 0 || plain.find(c) != std::string_view::npos) {
+        if (stays(c)) {
             text += c;
         } else {
             text += {'%', digits[byte >> 4], digits[byte & 15]};
         }
     }
     return text;
+}
+
+bool stays_for_servers(char c) {
+    constexpr std::string_view plain = "-._~/";
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || plain.find(c) != plain.npos;
+}
+
+/// The others would end the name, or stand for another character.
+bool stays_for_people(char c) {
+    return c != '?' && c != '#' && c != '%';
 }
 
 constexpr std::string_view s3 = "s3://";  // in letters of any case; the other schemes are longer
@@ -60,7 +69,8 @@ class HttpObjects : public Objects {
     }
 
     std::string name_of(const std::string& key) const override {
-        return io::without_secrets(key.empty() ? base_ : base_ + "/" + key);
+        return io::without_secrets(key.empty() ? base_
+                                               : base_ + "/" + escaped(key, stays_for_people));
     }
     Traffic traffic() const override { return traffic_.now(); }
 
@@ -108,7 +118,9 @@ class HttpObjects : public Objects {
     }
 
   private:
-    std::string url_of(const std::string& key) const { return base_ + "/" + escaped(key) + query_; }
+    std::string url_of(const std::string& key) const {
+        return base_ + "/" + escaped(key, stays_for_servers) + query_;
+    }
 
     static HttpRequest first_byte_of(std::string url) { return {std::move(url), ByteRange{0, 1}}; }
 

@@ -117,9 +117,9 @@ void try_store(Open&& open) {
 void try_located(const Json& json) {
     try {
         const auto image = palpate::io::chunked_image_from(json);
-        check_info(located_volume(
-                       image, std::make_shared<LocatedFile>(palpate::io::ChunkFile("file.ims")), {})
-                       .info);
+        const std::string name = "file.ims";
+        const auto file = std::make_shared<LocatedFile>(palpate::io::ChunkFile(name), name);
+        check_info(located_volume(image, file, {}).info);
     } catch (const Json::exception&) {  // the caller says that the helper gave no sensible answer
     } catch (const std::bad_optional_access&) {
     } catch (const std::exception& error) {

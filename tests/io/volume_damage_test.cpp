@@ -113,6 +113,7 @@ TEST(read_volume, says_what_is_wrong_with_a_path) {
     EXPECT_TRUE(contains(refusal("/dev/null"), "neither a file nor a folder"));
     EXPECT_TRUE(contains(refusal("HTTPS://host/v.zarr"), "is a web address"));
     EXPECT_TRUE(contains(refusal("ftp://host/v.zarr"), "begins with none of http://"));
+    EXPECT_TRUE(contains(refusal("https:/host/v.zarr"), "two slashes behind the colon"));
     EXPECT_TRUE(contains(refusal(folder.path()), "no DICOM or TIFF slices"));
     std::filesystem::create_directory(folder / "inner");
     EXPECT_TRUE(contains(refusal(folder.path()), "give one of the folders in it"));

@@ -128,3 +128,13 @@ def test_a_setup_that_was_refused_is_as_before_wherever_it_is_nested():
                                (setup, "speed", 1e4)):
         assert refused(lambda: setattr(owner, name, value))
     assert setup == before
+
+
+@pytest.mark.parametrize("name, other", ((" a.nhdr", ".nrrd"), (" a.mhd", ".mha"), ("a\nb.nhdr", ".nrrd"), ("a\rb.mhd", ".mha"), ("a:b.nhdr", ".nrrd")))
+def test_a_name_that_a_header_cannot_hold_is_refused_before_anything_is_written(tmp_path, name, other):
+    volume = palpate.Volume(numpy.zeros((2, 2, 2), "u1"))
+    with pytest.raises(palpate.OutputError, match=f"name it {other}"):
+        palpate.write(volume, tmp_path / name)
+    assert not list(tmp_path.iterdir())
+    palpate.write(volume, (tmp_path / name).with_suffix(other))
+    assert numpy.array_equal(palpate.load((tmp_path / name).with_suffix(other)).volume.array, volume.array)

@@ -85,6 +85,21 @@ def test_frames_of_one_position_lie_on_the_side_that_their_distance_tells(tmp_pa
     assert volume.geometry.spacing[2] == 4 and numpy.array_equal(volume.array, ramp("i2")[:: between // 4])
 
 
+def test_dimensions_order_the_frames_of_several_files_and_not_their_numbers_in_each(tmp_path):
+    """Three moments at two places. At each place, the frames are the first, second and third of a file by chance."""
+    planes = numpy.stack([ramp("u2")[0] + 1000 * t + 500 * z for t in range(3) for z in range(2)])
+    for number, part in enumerate(([0, 1, 2], [3, 4, 5])):
+        folder = enhanced(tmp_path / str(number), planes[part], [i % 2 for i in part],
+                          lambda i: {"DimensionIndexValues": [part[i] % 2 + 1, part[i] // 2 + 1]}, SOPInstanceUID=f"1.2.3.{number}",
+                          ConcatenationUID="1.2.5", InConcatenationNumber=number + 1, ConcatenationFrameOffsetNumber=3 * number)
+        (tmp_path / "all").mkdir(exist_ok=True)
+        (folder / "001.dcm").rename(tmp_path / "all" / f"{number}.dcm")
+    for t in range(3):
+        loaded = palpate.load(tmp_path / "all", frame=t)
+        assert loaded.time_steps == 3
+        assert numpy.array_equal(loaded.volume.array, planes[2 * t:2 * t + 2])
+
+
 # Units ------------------------------------------------------------------------------------------------
 
 

@@ -3,6 +3,8 @@
 import functools
 import http.server
 import json
+import pathlib
+import struct
 import threading
 
 import h5py
@@ -57,7 +59,8 @@ def test_blanks_anywhere_in_an_address_are_escaped(tmp_path, served, name, query
 
 @pytest.mark.parametrize("address, words", (
     ("file:///data/a.zarr", "give the path alone"), ("gs://bucket/a.zarr", "https://storage.googleapis.com/BUCKET/NAME"),
-    ("ftp://host/a.zarr", "begins with none of http://")))
+    ("ftp://host/a.zarr", "begins with none of http://"), (pathlib.Path("http://host/a.zarr"), "give it as text"),
+    (pathlib.Path("s3://bucket/a.zarr"), "give it as text")))
 def test_an_address_of_another_kind_is_refused_with_the_way_to_write_it(address, words):
     refused_store(address, words)
 
@@ -117,3 +120,47 @@ def test_several_values_in_each_pixel_are_not_called_colours(tmp_path, planes):
     data = numpy.moveaxis(ramp("u2"), 0, -1).copy() if planes == "contig" else ramp("u2")
     tifffile.imwrite(tmp_path / "a.tif", data, photometric="minisblack", planarconfig=planes, metadata=None)
     refused(tmp_path / "a.tif", "5 values in each pixel", "as a page")
+
+
+# In HDF5's newer format, each kind of index of chunks. libhdf5 1.10 tells the places of other chunks for arrays that
+# grow along one axis, unless it is the first.
+@pytest.mark.parametrize("most, read", (
+    ((None, 4, 6), True), ((5, 4, 6), True), ((9, 4, 12), True), ((None, 4, None), True), ((None, None, None), True), ((None, 4, 12), True),
+    ((5, None, 6), False), ((5, 4, None), False), ((9, 4, None), False)))
+@pytest.mark.parametrize("packed", (None, "gzip"))
+def test_chunks_of_hdf5_that_may_grow_are_read_in_their_places_or_refused(tmp_path, most, read, packed):
+    data = numpy.random.RandomState(1).randint(0, 65536, (5, 4, 6)).astype("u2")
+    path = tmp_path / "a.h5"
+    with h5py.File(path, "w", libver="latest") as file:
+        file["s00/resolutions"] = numpy.ones((1, 3))
+        file.create_dataset("t00000/s00/0/cells", data=data, chunks=(2, 3, 2), maxshape=most, compression=packed)
+    if not read:
+        refused_store(path, "t00000/s00/0/cells", "along an axis other than the first", "h5repack")
+        with h5py.File(path) as file, h5py.File(tmp_path / "b.h5", "w") as other:
+            other["s00/resolutions"] = file["s00/resolutions"][...]
+            file.copy("t00000", other)
+            other.create_dataset("t00001/s00/0/cells", data=data, chunks=(2, 3, 2), maxshape=most, compression=packed)
+        path = tmp_path / "b.h5"
+    store = palpate.open_store(path, time=0 if read else 1)
+    assert numpy.array_equal(store.read((0, 0, 0), store.levels[0].size).array, data)
+
+
+@pytest.mark.parametrize("name", ("a.ome.tf2", "a.ome.tf8", "a.ome.btf", "a.TIFF"))
+def test_large_files_of_ome_have_names_of_their_own(tmp_path, name):
+    tifffile.imwrite(tmp_path / name, ramp("u2"), bigtiff=True, ome=True, tile=(16, 16), photometric="minisblack", metadata={"axes": "ZYX"})
+    store = palpate.open_store(tmp_path / name)
+    assert numpy.array_equal(store.read((0, 0, 0), store.levels[0].size).array, ramp("u2"))
+
+
+@pytest.mark.parametrize("tile", (None, (16, 16)))
+def test_deflated_tiff_may_have_its_bits_in_reverse_order(tmp_path, tile):
+    path, reverse = tmp_path / "a.tif", bytes(int(f"{byte:08b}"[::-1], 2) for byte in range(256))
+    tifffile.imwrite(path, ramp("u2"), compression="zlib", tile=tile, photometric="minisblack", metadata=None, extratags=[(263, 3, 1, 2, False)])
+    data = bytearray(path.read_bytes())
+    with tifffile.TiffFile(path) as file:
+        for page in file.pages:
+            struct.pack_into("<H", data, page.tags[263].offset, 266)  # FillOrder, which tifffile does not write
+            for at, count in zip(page.dataoffsets, page.databytecounts):
+                data[at:at + count] = data[at:at + count].translate(reverse)
+    path.write_bytes(data)
+    assert numpy.array_equal(palpate.load(path).volume.array, ramp("u2"))

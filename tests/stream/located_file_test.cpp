@@ -229,7 +229,7 @@ TEST(LocatedFile, who_is_stopped_while_a_part_is_fetched_asks_no_more_and_the_ne
 
 TEST(LocatedFile, who_waits_for_its_turn_stops_while_another_one_still_reads) {
     FarFile far;
-    const auto located = std::make_shared<LocatedFile>(far.file());
+    const auto located = std::make_shared<LocatedFile>(far.file(), "image.ims");
     const auto objects = folder_objects(hdf5_written());
     const ChunkedArray array = located_volume(located->file.describe(0, 0), located, {}).arrays[0];
     ASSERT_EQ(::kill(*children().begin(), SIGKILL), 0);  // the next one reads all anew
@@ -255,7 +255,7 @@ TEST(LocatedFile, who_waits_for_its_turn_stops_while_another_one_still_reads) {
 
 TEST(LocatedFile, threads_share_the_turns_of_a_file_and_the_stop_of_one_is_not_that_of_others) {
     FarFile far;
-    const auto located = std::make_shared<LocatedFile>(far.file());
+    const auto located = std::make_shared<LocatedFile>(far.file(), "image.ims");
     std::vector<std::unique_ptr<ChunkReader>> readers;
     std::vector<std::optional<Bytes>> right;
     constexpr std::array<std::int64_t, 3> chunk{};

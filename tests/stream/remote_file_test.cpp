@@ -28,6 +28,15 @@ void expect_same_store(const Store& here, const Store& there) {
     }
 }
 
+std::string in_address(std::string name) {
+    for (const auto& [c, escape] : {std::pair{"%", "%25"}, {"?", "%3F"}, {"#", "%23"}}) {
+        for (std::size_t at = 0; (at = name.find(c, at)) != name.npos; at += 3) {
+            name.replace(at, 1, escape);
+        }
+    }
+    return name;
+}
+
 StoreOptions patient() {
     StoreOptions options;
     options.attempts = 10;
@@ -64,6 +73,43 @@ TEST(RemoteFile, names_with_escapes_a_query_and_a_fragment_are_found) {
     const auto store =
         open_store(server.address("a%20folder/an%20image%2050%25.ims?version=1#top"));
     expect_same_store(*open_store(hdf5_written() / "image.ims"), *store);
+}
+
+/// A name without a query is no secret, and messages are no keys.
+TEST(RemoteFile, names_with_characters_of_addresses_are_found_and_lead_back) {
+    const ScratchFolder folder;
+    const std::pair<fs::path, const char*> names[] = {
+        {hdf5_written() / "image.ims", "what?.ims"},
+        {hdf5_written() / "image.ims", "50%25#1?.ims"},
+        {tiff_written() / "pyramid.tif", "what?now.tif"},
+        {tiff_written() / "pyramid.tif", "a@b.tif"}};
+    const VolumeServer server({"--folder", folder.path().string()});
+    for (const auto& [from, name] : names) {
+        SCOPED_TRACE(name);
+        fs::copy_file(from, folder.path() / name);
+        const auto here = open_store(from), there = open_store(server.address(in_address(name)));
+        EXPECT_EQ(there->info().address, server.address(in_address(name)));
+        expect_same_store(*here, *there);
+        expect_same_store(*here, *open_store(there->info().address));
+    }
+}
+
+TEST(RemoteFile, a_file_that_is_gone_has_no_missing_chunks) {
+    const ScratchFolder folder;
+    const VolumeServer server({"--folder", folder.path().string()});
+    const fs::path file = folder.path() / "image.ims";
+    for (const std::string& address : {file.string(), server.address("image.ims")}) {
+        SCOPED_TRACE(address);
+        fs::copy_file(hdf5_written() / "image.ims", file);
+        const auto store = open_store(address);
+        const SampleBox box = whole_box(store->info().levels[0].geometry);
+        EXPECT_FALSE(read_box(*store, 0, box).empty());
+        fs::remove(file);
+        const std::string message =
+            message_of<io::InputError>([&] { (void)read_box(*store, 0, box); });
+        EXPECT_EQ(message,
+                  address + ": is gone since it was opened; put it back, or open it again");
+    }
 }
 
 TEST(RemoteFile, a_disk_cache_keeps_its_parts_until_the_file_is_another) {
