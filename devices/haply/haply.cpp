@@ -51,12 +51,13 @@ Begun begin_talk(haply::Talk talk, const std::string& host, double port, const s
         throw DeviceError("device haply: no host '" + host +
                           "': host=NAME is where Haply's Inverse Service runs, usually 127.0.0.1");
     }
-    // For one that is just starting.
-    const haply::Clock::time_point deadline = haply::time_of(timing) + 1s;
+    // For a service that is just starting, and for one on a busy machine, which answers late.
+    const haply::Clock::time_point begin = haply::time_of(timing);
+    const haply::Clock::time_point started = begin + 1s, answered = begin + 5s;
     for (;;) {
-        begun.wrong = haply::start_talk(begun.talk, begun.address, device, deadline);
+        begun.wrong = haply::start_talk(begun.talk, begun.address, device, answered);
         const haply::Clock::time_point next = haply::time_of(timing) + 100ms;
-        if (begun.wrong.empty() || next > deadline) break;
+        if (begun.wrong.empty() || next > started) break;
         timing.sleep_until(haply::ns_of(next));
     }
     if (begun.wrong.empty() && begun.talk.state.device_id.empty()) {
@@ -80,7 +81,7 @@ DeviceFinding haply::find(Talk talk, const Timing& timing) {
         "calibrated=ask (ask|assume),timeout=2";
     try {
         const Address address = address_from(usual_host(), usual_port());
-        finding.missing = start_talk(talk, address, "", time_of(timing) + 250ms);
+        finding.missing = start_talk(talk, address, "", time_of(timing) + 2s);
         if (!finding.missing.empty()) return finding;
         finding.found = !talk.state.device_id.empty();
         const std::string place = address.host + ":" + std::to_string(address.port);

@@ -56,12 +56,15 @@ def one(program, random, folder, counts):
     what = f"{which.name}: {ended}"
     if ended.timed_out:
         raise Finding(f"does not end: {what}")
-    if ended.status not in (128 + which, -which):
+    gave_up = not felt and ended.status == 4  # a busy machine: the service did not answer in time
+    if ended.status not in (128 + which, -which) and not gave_up:
         raise Finding(f"an unexpected status: {what}")
     counts[which.name] += 1
     counts["with force"] += felt
     check(service, what)
     expect_tidy(folder, ended)
+    if gave_up:
+        return
     validated = program.run(["replay", "r.csv", "--validate", "--quiet"], folder)
     if validated.status != 0 and not (ended.status < 0 and validated.status == 3):
         raise Finding(f"the recording does not validate: {validated}; {what}")

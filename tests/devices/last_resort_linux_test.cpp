@@ -41,6 +41,7 @@ class Motor : public Device {
     void step() noexcept {
         if (++time_ % period_ == 0) sent_ = link_.wrench(now()).force.norm();
     }
+    std::int64_t steps() const noexcept { return time_; }
 
   private:
     std::int64_t now() const noexcept { return time_ * 1'000'000; }
@@ -79,7 +80,16 @@ void let_time_pass(int milliseconds) noexcept {
     for (int i = 0; i < milliseconds; ++i) child->step();
 }
 
-/// The same on a thread of its own at the real pace, as in every backend.
+/// The same if the motors have a thread: time passes as they step, however seldom that is.
+void let_thread_step(int milliseconds) noexcept {
+    constexpr int patience = 1000;  // so that a thread that no longer steps fails the test
+    const std::int64_t wanted = child->first.steps() + milliseconds;
+    for (int i = 0; child->first.steps() < wanted && i < patience; ++i) {
+        std::this_thread::sleep_for(1ms);
+    }
+}
+
+/// Steps on a thread of its own, as in every backend.
 struct MotorThread {
     std::jthread thread{[](std::stop_token stop) {
         prepare_device_thread();
@@ -107,15 +117,17 @@ Crashed crashed(bool guarded, F&& crash, int period = 1, Motors motors = Motors:
     const pid_t process = ::fork();
     if (process == 0) {
         std::fclose(stderr);  // what terminate() has to say
-        // Sanitizers have handlers of their own.
-        for (const int s : {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT}) std::signal(s, SIG_DFL);
+        // Sanitizers have handlers of their own, and shells ignore some signals for `ctest &`.
+        for (const int s : {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGINT, SIGQUIT, SIGHUP}) {
+            std::signal(s, SIG_DFL);
+        }
         Child here(shared, period);
         child = &here;
         std::optional<MotorThread> thread;
         if (motors == Motors::threaded) thread.emplace();
         std::optional<LastResort> last_resort, of_second;
         if (guarded) {
-            const auto pause = thread ? nullptr : &let_time_pass;
+            const auto pause = thread ? &let_thread_step : &let_time_pass;
             last_resort.emplace(here.first, pause);
             of_second.emplace(here.second, pause);
         }

@@ -45,7 +45,7 @@ def with_device(text, *arguments):
         file.write(text + "\n")
         file.flush()
         return subprocess.run(["umockdev-run", "--device", file.name, "--", PALPATE, *arguments], capture_output=True,
-                              text=True, timeout=300, check=False)
+                              text=True, check=False)
 
 
 class PluggedIn(unittest.TestCase):

@@ -228,7 +228,7 @@ def test_the_program_says_in_a_line_what_is_wrong_and_goes_on_after_a_stop(tmp_p
     while running.poll() is None and not (records.exists() and any(records.iterdir())):
         time.sleep(0.05)
     running.send_signal(signal.SIGINT)
-    _, said = running.communicate(timeout=300)
+    _, said = running.communicate()
     assert running.returncode == 130 and "the same command continues" in said
     again = subprocess.run(command, check=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
     assert int(re.search(r"\((\d+) kept", again.stdout)[1]) > 60

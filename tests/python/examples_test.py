@@ -11,7 +11,7 @@ EXAMPLES = pathlib.Path(os.environ["PALPATE_SOURCE"]) / "examples" / "python"
 
 def output_of(script, *arguments):
     return subprocess.run([sys.executable, "-B", EXAMPLES / script, *arguments], check=True,
-                          stdout=subprocess.PIPE, text=True, timeout=300).stdout
+                          stdout=subprocess.PIPE, text=True).stdout
 
 
 def test_a_hand_that_presses_two_millimetres_into_a_head_feels_the_spring():

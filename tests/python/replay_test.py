@@ -7,8 +7,6 @@ import os
 import re
 import struct
 import subprocess
-import threading
-import time
 from xml.etree import ElementTree
 
 import numpy
@@ -100,29 +98,6 @@ def test_a_copied_renderer_goes_on_exactly_as_its_original():
     for t, at in zip(seconds[half:], position[half:]):
         force = renderer.render(t, at).force
         assert all(numpy.array_equal(force, other.render(t, at).force) for other in others)
-
-
-def test_replay_releases_the_gil():
-    scene = palpate.scene("torus:40x40x40")
-    field = palpate.Field(scene.volume)
-    seconds, position = motion_on(field, scene.isovalue)
-    repeats = 100
-    times = numpy.arange(len(seconds) * repeats) * 1e-3
-    positions = numpy.tile(position, (repeats, 1))
-    done = threading.Event()
-
-    def work():
-        palpate.replay(field, scene.isovalue, times, positions)
-        done.set()
-
-    thread = threading.Thread(target=work)
-    thread.start()
-    counted = 0
-    while not done.is_set():
-        counted += 1
-        time.sleep(0.0005)
-    thread.join()
-    assert counted > 10  # with the GIL held this thread would not run before the end
 
 
 def test_layers_and_penetrability_are_felt():

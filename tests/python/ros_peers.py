@@ -20,9 +20,10 @@ from palpate.ros import Node
 
 def ros_1(log):
     """rospy, with a master of its own."""
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
+    reserved = socket.socket()  # which the master may use as well, as it does not listen
+    reserved.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    reserved.bind(("127.0.0.1", 0))
+    port = reserved.getsockname()[1]
     os.environ.update(ROS_MASTER_URI=f"http://127.0.0.1:{port}", ROS_IP="127.0.0.1",
                       ROS_LOG_DIR=str(log))
     with pytest.raises(palpate.DeviceError, match="no ROS master at .*: start roscore"):
@@ -37,6 +38,7 @@ def ros_1(log):
     rospy.signal_shutdown("done")
     master.terminate()
     master.wait()
+    reserved.close()
 
 
 def ros_2():

@@ -427,7 +427,7 @@ def test_a_process_of_ros_that_hangs_is_ended(ros):
     os.kill(node._process.pid, signal.SIGSTOP)
     closing = threading.Thread(target=node.close, daemon=True)
     closing.start()
-    until(lambda: node._process.poll() is not None, 60)
+    until(lambda: node._process.poll() is not None)
     closing.join()
 
 

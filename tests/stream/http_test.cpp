@@ -14,16 +14,11 @@ namespace palpate::stream::test {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 using support::contains;
 using support::message_of;
 using support::put_bytes;
 using support::ScratchFolder;
-
-double seconds_since(Clock::time_point begin) {
-    return std::chrono::duration<double>(Clock::now() - begin).count();
-}
 
 StoreOptions quick() {
     StoreOptions options;
@@ -122,26 +117,20 @@ TEST(Http, several_threads_read_at_a_time_within_the_bound_on_requests) {
     EXPECT_TRUE(contains(counts, "\"most_at_once\": 4,")) << counts;
 }
 
-TEST(Http, reading_stops_within_a_tenth_of_a_second_when_asked_to) {
-    const VolumeServer server({"--delay", "1500"});
+TEST(Http, reading_stops_when_asked_to_while_the_server_is_silent) {
+    const VolumeServer server;
     StoreOptions options;
-    options.requests = 64;
+    options.timeout_s = 3600;  // only the request to stop ends the wait
     const auto store = open_store(server.address("virtual.zarr"), options);
+    server.stop_answering();
     std::vector<std::byte> out(1);
-    // A machine that stalls is told apart from a store that does not stop.
-    bool soon = false;
-    for (int attempt = 0; attempt < 20 && !soon; ++attempt) {
-        std::stop_source source;
-        std::jthread stopper([&] {
-            std::this_thread::sleep_for(std::chrono::milliseconds(100));
-            source.request_stop();
-        });
-        const auto begin = Clock::now();
-        EXPECT_THROW(store->read(0, {Index3::Zero(), Index3::Zero()}, out, source.get_token()),
-                     Cancelled);
-        soon = seconds_since(begin) < 0.3;
-    }
-    EXPECT_TRUE(soon);
+    std::stop_source source;
+    const std::jthread stopper([&] {
+        std::this_thread::sleep_for(100ms);  // so that it usually waits
+        source.request_stop();
+    });
+    EXPECT_THROW(store->read(0, {Index3::Zero(), Index3::Zero()}, out, source.get_token()),
+                 Cancelled);
 }
 
 TEST(Http, a_missing_chunk_is_fill_and_missing_metadata_an_error) {

@@ -234,6 +234,16 @@ def touching(volume: _Path, level: Union[float, str, None], device: str, name: s
         put(setup.render, name, value)
         return palpate.Run(loaded, setup), setup.render.stiffness or 0
 
+    def touched_for(run):
+        """The newest snapshot, after so many seconds of the session. A busy machine may do its first tick late."""
+        begun = None
+        while True:
+            time.sleep(0.005)
+            now = run.snapshot()
+            begun = now.tick.time if now and begun is None else begun
+            if now and now.tick.time >= begun + seconds:
+                return now
+
     def felt(value, file):
         run, stiffness = opened(value)
         if file in made:
@@ -243,12 +253,11 @@ def touching(volume: _Path, level: Union[float, str, None], device: str, name: s
         with run:
             run.record(file)
             made.add(file)
-            time.sleep(seconds)
+            now = touched_for(run)
             run.stop_recording()
             if run.problem:
                 raise DeviceError(f"device: {run.problem}")
-            now = run.snapshot()
-            if now and now.stiffness < stiffness:  # a device may tell its limits only once it is connected
+            if now.stiffness < stiffness:  # a device may tell its limits only once it is connected
                 raise ValueError(f"stiffness [N/mm] = {stiffness:g}: the device renders only {now.stiffness:g} stably")
         return bool(palpate.read_recording(file).trace.force.any())
 

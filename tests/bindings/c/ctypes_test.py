@@ -100,12 +100,16 @@ def main():
     volume = ball()
     check(library.palpate_data_create(volume, byref(data)))
     library.palpate_volume_destroy(volume)
-    depth, forces, closed = [35.0], [], []
+    depth, step, forces, closed = 35.0, -0.02, [], []
 
     def read(reading, _):
-        depth[0] = max(26.0, depth[0] - 0.02)
+        nonlocal depth, step
+        # In and out: after a tick that took too long, forces wait for a hand that comes anew.
+        if not 26 < depth + step <= 35:
+            step = -step
+        depth += step
         reading.contents.status = 1
-        reading.contents.position[2] = depth[0]
+        reading.contents.position[2] = depth
         return 0
 
     def write(wrench, _):
@@ -123,13 +127,12 @@ def main():
     check(library.palpate_run_start(run))
     # On a busy machine a reading may be older than 20 ms every time, and the force would never rise.
     check(library.palpate_run_set(run, b"force.stale_after", c_double(3600)))
-    snapshot, end = sized(SnapshotBegin), time.monotonic() + 120
-    while time.monotonic() < end and not (forces and abs(forces[-1]) > 0.5):
+    snapshot = sized(SnapshotBegin)
+    while max(map(abs, forces), default=0) < 0.5 or sum(f * f for f in snapshot.felt.force) < 0.25:  # however long a busy machine takes
         time.sleep(1 / 60)
         if library.palpate_run_snapshot(run, byref(snapshot)) not in (0, 7):
             raise RuntimeError(library.palpate_last_error().decode())
-    assert max(abs(f) for f in forces) > 0.5, "nothing was felt"
-    assert max(abs(f) for f in forces) <= 2, "the device's limit"
+    assert max(map(abs, forces)) <= 2, "the device's limit"
     assert snapshot.felt.mode == 1 and snapshot.number > 0
     radius = sum(c * c for c in snapshot.felt.scp) ** 0.5
     assert abs(radius - 30) < 0.3, radius

@@ -401,17 +401,19 @@ TEST(Servo, any_number_of_observers_see_ticks_that_only_go_forward) {
 TEST(PacedServo, its_thread_renders_at_its_rate_until_it_is_stopped) {
     ScriptedDevice device(&press);
     Servo servo(ramp_session(), device, {.rate = 1000});
+    const auto begun = std::chrono::steady_clock::now();
     servo.start();
     EXPECT_THROW(servo.start(), std::logic_error);
     EXPECT_EQ(servo.privileges().size(), 2U);
     EXPECT_THROW((void)servo.session(), std::logic_error);
     ASSERT_TRUE(comes_true([&] { return servo.report().ticks >= 500; }));
-    EXPECT_NE(device.force(), Vec3(0, 0, 0));
+    EXPECT_TRUE(comes_true([&] { return device.force() != Vec3(0, 0, 0); }));
     servo.stop();
     EXPECT_EQ(device.force(), Vec3(0, 0, 0));
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
     const ServoReport report = servo.report();
+    EXPECT_LE(static_cast<double>(report.ticks), 1000 * took.count() + 2) << "a busy one is slower";
     EXPECT_EQ(report.period.count, static_cast<std::uint64_t>(report.ticks - 1));
-    EXPECT_NEAR(static_cast<double>(report.period.p50), 1e6, 2e5);
     EXPECT_LE(report.compute.p50, report.work.max);
     EXPECT_GE(report.worst.tick, 0);
     EXPECT_NE(report.worst.cause, TickCause::none);

@@ -125,10 +125,10 @@ class Node:
         return Arm(self._link, info or DeviceInfo(), axes, pose_rate)
 
     def close(self) -> None:
-        """Ends the process, after a force of zero; after 2 s, whatever it does. Any number of times."""
+        """Ends the process, after a force of zero; after 10 s, whatever it does. Any number of times."""
         self._link.close()
         try:
-            self._process.wait(timeout=2)
+            self._process.wait(timeout=10)
         except subprocess.TimeoutExpired:
             self._process.kill()
             self._process.wait()
