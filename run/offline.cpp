@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -139,6 +140,17 @@ void take_bricks(stream::BrickLoader& loader, Renderer& renderer) {
 }
 
 }  // namespace
+
+io::TraceExtras trace_extras(const RendererSettings& settings, bool streamed) {
+    io::TraceExtras extras;
+    extras.tool = settings.tool != nullptr;
+    extras.streamed = streamed;
+    if (!settings.layers) return extras;
+    std::ranges::transform(settings.layers->layers, std::back_inserter(extras.layer_names),
+                           &Layer::name);
+    extras.nested_layers = level_count(*settings.layers);
+    return extras;
+}
 
 std::function<void(Renderer&, std::int64_t)> wait_for_bricks(const LoadedVolume& loaded,
                                                              const io::Trajectory& trajectory,

@@ -87,6 +87,7 @@ void add_demo(CLI::App& app) {
     options->motion = "explore";
     options->picture_width = 900;
     options->output = "palpate-demo";
+    options->results = {"path.csv"};
     CLI::App* command = app.add_subcommand(
         "demo", "Let a simulated hand explore a volume, and draw pictures and a report");
     command->footer(

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <stdexcept>
 
 #include "apps/options/values.hpp"
 #include "apps/palpate/commands.hpp"
@@ -141,6 +142,12 @@ io::Trajectory resting_hand(const Field& field, double isovalue, double depth, d
     const Vec3 out = g.direction.col(0);
     const double reach = 0.5 * g.size[0] * g.spacing[0] + approach;
     const RayHit ray = cast_ray(field, isovalue, centre + reach * out, centre);
+    if (!ray.hit) {
+        throw std::invalid_argument(
+            fmt::format("the hand comes along the first axis of the grid and meets no surface of "
+                        "isovalue {:g} in the first frame: choose another --isovalue",
+                        isovalue));
+    }
     const Vec3 begin = ray.point + approach * out;
     const Vec3 end = ray.point - depth * out;
     constexpr double arrival = 0.6;  // [s]
@@ -215,6 +222,7 @@ void add_demo_sculpt(CLI::App& demo) {
     auto options = std::make_shared<ChangingOptions>();
     options->source.volume() = "synthetic:shepp-logan";
     options->output = "palpate-sculpt";
+    options->results = {"animation.png", "edited.nrrd"};
     options->motion = "slide";
     options->brush.radius = 5;
     options->brush.rate = 6;  // slow enough to be felt
@@ -233,6 +241,7 @@ void add_demo_beating(CLI::App& demo) {
     auto options = std::make_shared<ChangingOptions>();
     options->source.volume() = "synthetic:beating";
     options->output = "palpate-beating";
+    options->results = {"animation.png"};
     options->hand.depth_mm = 5;
     CLI::App* command = add_changing(
         demo, "beating",

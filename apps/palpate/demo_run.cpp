@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <stdexcept>
 #include <string_view>
 
 #include "apps/options/say.hpp"
@@ -12,6 +13,7 @@
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/demo_figure.hpp"
 #include "apps/palpate/offline_summary.hpp"
+#include "apps/palpate/outputs.hpp"
 #include "apps/palpate/picture.hpp"
 #include "apps/palpate/progress.hpp"
 #include "apps/palpate/result_folder.hpp"
@@ -22,6 +24,25 @@ namespace palpate::app {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Where a simulated hand finds a surface: the outermost of layers by level, else the level asked
+/// for or suggested. Throws std::invalid_argument if nothing is solid there.
+double touched_isovalue(const run::LoadedVolume& loaded, const Field& field,
+                        const run::FieldSetup& setup, const run::RenderSetup& render) {
+    const auto& layers = render.layers;
+    const bool has_levels = layers && !layers->layers.by_label && !layers->layers.layers.empty();
+    if (has_levels) return required_isovalue(loaded, field, setup, render);
+    const double isovalue = run::isovalue_of(loaded, setup);
+    const double s = field.sign();
+    const Samples& samples = field.samples();
+    const double most = s > 0 ? samples.maximum() : samples.minimum();
+    if (s * isovalue >= std::max(s * most, s * field.background())) {
+        throw std::invalid_argument(run::level_warning(field, isovalue));
+    }
+    if (layers) warn_of_layers(*layers, loaded);
+    warn_of_isovalue(field, isovalue);
+    return isovalue;
+}
 
 /// The trajectory of the hand as a file that replay reads.
 void write_trajectory(const io::Trajectory& trajectory, const fs::path& path) {
@@ -36,10 +57,9 @@ void write_trajectory(const io::Trajectory& trajectory, const fs::path& path) {
 /// Renders the motion; writes trajectory, trace and path to files.
 void feel(Demo& demo, const DemoOptions& options, const fs::path& folder) {
     Renderer renderer = make_renderer(
-        demo.field, demo.isovalue,
-        run::offline_settings(options.render.setup_in(demo.loaded), demo.field, demo.isovalue));
+        demo.field, demo.isovalue, run::offline_settings(demo.render, demo.field, demo.isovalue));
     write_trajectory(demo.trajectory, folder / "trajectory.csv");
-    io::TraceWriter trace(folder / "trace.csv");
+    io::TraceWriter trace(folder / "trace.csv", {}, run::trace_extras(renderer.settings));
     std::optional<io::PathWriter> path;
     run::OfflineSinks sinks;
     if (!demo.change) {
@@ -100,7 +120,7 @@ std::string report_html(const Demo& demo, const std::string& images) {
 }  // namespace
 
 void add_demo_options(CLI::App& command, DemoOptions& options) {
-    options.source.add_to(command, SourceOptions::For::touching, true);
+    options.source.add_to(command, SourceOptions::For::surfaces, true);
     add_field_options(command, options.field);
     options.render.add_to(command, options.source.memory);
     command.option_defaults()->always_capture_default();  // of all that follow
@@ -117,12 +137,29 @@ void add_motion_options(CLI::App& command, DemoOptions& options) {
     command.add_option("--duration", options.hand.duration_s, "Duration of the motion [s]");
 }
 
+std::vector<std::string> DemoOptions::all_results() const {
+    std::vector<std::string> all{"report.html", "surface.png",    "session.png",
+                                 "session.svg", "trajectory.csv", "trace.csv"};
+    all.insert(all.end(), results.begin(), results.end());
+    return all;
+}
+
 Demo load_demo(const DemoOptions& options) {
-    run::LoadedVolume loaded = load_for_terminal(options.source);
+    std::vector<std::string> inputs = options.render.inputs(), outputs;
+    inputs.push_back(options.source.name());
+    for (const std::string& name : options.all_results()) {
+        outputs.push_back((fs::path(options.output) / name).string());
+    }
+    refuse_inputs(inputs, outputs);
+    run::LoadedVolume loaded = load_whole(options.source);
     const Field field =
         run::make_field(loaded.volume, options.field, options.render.given.method.method);
-    const double isovalue = suggested_isovalue(loaded, field, options.field);
-    return {std::move(loaded), field, isovalue};
+    run::RenderSetup render = options.render.setup_in(loaded);
+    const double isovalue = touched_isovalue(loaded, field, options.field, render);
+    return {.loaded = std::move(loaded),
+            .field = field,
+            .isovalue = isovalue,
+            .render = std::move(render)};
 }
 
 io::Trajectory motion_of(const Demo& demo, const DemoOptions& options) {
@@ -143,7 +180,7 @@ pictures::PictureScene scene_of(const Demo& demo, const DemoOptions& options) {
 void run_demo(Demo& demo, const DemoOptions& options, const DemoPicture& picture,
               const std::function<void(const fs::path& folder)>& more) {
     const bool quiet = options.source.quiet;
-    ResultFolder results(options.output);
+    ResultFolder results(options.output, options.all_results());
     const fs::path& folder = results.part();
     feel(demo, options, folder);
     std::string images;

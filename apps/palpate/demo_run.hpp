@@ -22,8 +22,12 @@ struct DemoOptions {
     RenderOptions render;
     std::string motion;
     scenes::MotionSettings hand;
-    int picture_width;   ///< [pixels]
-    std::string output;  ///< folder
+    int picture_width;                 ///< [pixels]
+    std::string output;                ///< folder
+    std::vector<std::string> results;  ///< names of files in it, besides those of every demo
+
+    /// All names.
+    std::vector<std::string> all_results() const;
 };
 
 /// All but the motion and its length, which add_motion_options() adds. The help shows the defaults
@@ -39,6 +43,7 @@ struct Demo {
     double isovalue;
     std::string hand = {};  ///< what the hand is and does, to begin a sentence with
     io::Trajectory trajectory = {};
+    run::RenderSetup render = {};
     /// As run::OfflineSinks::change; empty: the data do not change, and path.csv is written.
     std::function<void(Renderer&, std::int64_t tick)> change = {};
     /// Called after each tick; may be empty.
@@ -47,7 +52,8 @@ struct Demo {
     run::OfflineSummary summary = {};
 };
 
-/// Loads the volume and chooses the level.
+/// Loads the volume and chooses the level. Throws std::invalid_argument if a result would replace
+/// an input, or if there is nothing to touch.
 Demo load_demo(const DemoOptions& options);
 /// The motion that the options name, over the field of the demo.
 io::Trajectory motion_of(const Demo& demo, const DemoOptions& options);

@@ -55,17 +55,26 @@ void print_json(const nlohmann::ordered_json& json) {
     fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
+void refuse_inputs(const std::vector<std::string>& inputs,
+                   const std::vector<std::string>& outputs) {
+    for (const std::string& output : outputs) {
+        for (const std::string& input : inputs) {
+            if (output.empty() || input.empty()) continue;
+            if (!same_file(output, input) && !stream::is_read_from(output, input)) continue;
+            throw std::invalid_argument(
+                output + " is an input and would be replaced: choose another output");
+        }
+    }
+}
+
 void check_outputs(const std::vector<std::string>& inputs,
                    const std::vector<std::string>& outputs) {
+    for (const std::string& output : outputs) {
+        if (!output.empty() && !is_zarr(output)) io::check_output(output);
+    }
+    refuse_inputs(inputs, outputs);
     for (std::size_t i = 0; i < outputs.size(); ++i) {
         if (outputs[i].empty()) continue;
-        if (!is_zarr(outputs[i])) io::check_output(outputs[i]);
-        for (const std::string& input : inputs) {
-            if (input.empty()) continue;
-            if (!same_file(outputs[i], input) && !stream::is_read_from(outputs[i], input)) continue;
-            throw std::invalid_argument(
-                outputs[i] + " is an input and would be replaced: choose another output");
-        }
         for (std::size_t j = 0; j < i; ++j) {
             if (outputs[j].empty() || !same_file(outputs[i], outputs[j])) continue;
             throw std::invalid_argument("two outputs go to " + outputs[i] + ": give each its own");

@@ -20,9 +20,13 @@ void check_volume_name(const std::string& name);
 /// Prints JSON, indented. What is not UTF-8, as the name of a file may be, is replaced.
 void print_json(const nlohmann::ordered_json& json);
 
-/// Throws std::invalid_argument if an output is an input or a file of one (stream::is_read_from),
-/// or two outputs are the same; io::OutputError if one cannot be written (a folder *.zarr is not
-/// looked at here). Empty names are skipped; devices such as /dev/null may be shared.
+/// Throws std::invalid_argument if an output is an input or a file of one (stream::is_read_from).
+/// Empty names are skipped.
+void refuse_inputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
+
+/// The same, and throws std::invalid_argument if two outputs are the same; io::OutputError if one
+/// cannot be written (a folder *.zarr is not looked at here). Devices such as /dev/null may be
+/// shared.
 void check_outputs(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
 
 }  // namespace palpate::app

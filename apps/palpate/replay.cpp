@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <iterator>
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -98,17 +97,6 @@ auto real_time() {
     };
 }
 
-io::TraceExtras extras_of(const RendererSettings& settings, bool streamed) {
-    io::TraceExtras extras;
-    extras.tool = settings.tool != nullptr;
-    extras.streamed = streamed;
-    if (!settings.layers) return extras;
-    std::ranges::transform(settings.layers->layers, std::back_inserter(extras.layer_names),
-                           &Layer::name);
-    extras.nested_layers = level_count(*settings.layers);
-    return extras;
-}
-
 /// Throws std::invalid_argument, saying what is missing or does not go together.
 void check(const ReplayOptions& options) {
     if (!options.recorded_volume.empty()) {
@@ -150,7 +138,7 @@ void replay(const ReplayOptions& options) {
 
     const bool has_tool = renderer.settings.tool != nullptr;
     io::TraceWriter trace(options.output, {},
-                          extras_of(renderer.settings, loaded.streamed.has_value()));
+                          run::trace_extras(renderer.settings, loaded.streamed.has_value()));
     std::optional<io::PathWriter> path;
     if (!options.path.empty()) path.emplace(options.path);
     std::optional<io::PosesWriter> poses;

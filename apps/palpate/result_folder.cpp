@@ -3,8 +3,11 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <fstream>
+#include <stdexcept>
+#include <utility>
 
 #include "io/system/leftovers.hpp"
 #include "io/system/removal.hpp"
@@ -15,7 +18,8 @@ namespace palpate::app {
 
 namespace fs = std::filesystem;
 
-ResultFolder::ResultFolder(const fs::path& folder) : folder_(folder) {
+ResultFolder::ResultFolder(const fs::path& folder, std::vector<std::string> names)
+    : folder_(folder), names_(std::move(names)) {
     std::error_code error;
     is_new_ = fs::create_directories(folder_, error);
     if (folder_.empty() || error || !fs::is_directory(folder_)) {
@@ -45,9 +49,13 @@ void ResultFolder::complete() {
         throw io::OutputError(folder_.string() + ": " + io::reason(errno) + ": check the disk");
     }
     for (const auto& entry : fs::directory_iterator(part_)) {
-        if (entry.path().filename() == io::temporary_marker) continue;
+        const std::string name = entry.path().filename().string();
+        if (name == io::temporary_marker) continue;
+        if (std::ranges::find(names_, name) == names_.end()) {
+            throw std::logic_error(name + " is not among the names of the results");
+        }
         std::error_code error;
-        const fs::path target = folder_ / entry.path().filename();
+        const fs::path target = folder_ / name;
         fs::rename(entry.path(), target, error);
         if (error) {
             throw io::OutputError(target.string() + ": could not be put in place: " +

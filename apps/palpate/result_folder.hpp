@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace palpate::app {
 
@@ -10,8 +12,9 @@ namespace palpate::app {
 /// in this folder goes when the next one begins there.
 class ResultFolder {
   public:
-    /// Makes both folders. Throws io::OutputError if nothing can be written there.
-    explicit ResultFolder(const std::filesystem::path& folder);
+    /// Makes both folders. `names` are those of all results that may be made. Throws
+    /// io::OutputError if nothing can be written there.
+    ResultFolder(const std::filesystem::path& folder, std::vector<std::string> names);
     /// What was not completed goes.
     ~ResultFolder();
     ResultFolder(const ResultFolder&) = delete;
@@ -19,11 +22,14 @@ class ResultFolder {
 
     /// Where to make the results.
     const std::filesystem::path& part() const { return part_; }
-    /// Puts what was made in place; more may be made and completed after. Throws io::OutputError.
+    /// Puts what was made in place; more may be made and completed after. Throws io::OutputError,
+    /// and std::logic_error for a result that is not among the names: whether it is an input was
+    /// not checked.
     void complete();
 
   private:
     std::filesystem::path folder_, part_;
+    std::vector<std::string> names_;
     bool is_new_ = false;
     bool complete_ = false;
     int lock_ = -1;  // on part_, see io/system/leftovers.hpp

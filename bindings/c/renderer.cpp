@@ -1,6 +1,9 @@
 // Renderers of the C interface: a tick at a time in the caller's own loop.
+#include <vector>
+
 #include "bindings/c/handles.hpp"
 #include "bindings/c/structs.hpp"
+#include "palpate/run/no_effect.hpp"
 
 namespace palpate::c {
 
@@ -15,8 +18,14 @@ extern "C" PALPATE_API palpate_status palpate_renderer_create(const palpate_fiel
         std::optional<double> isovalue = felt.isovalue;
         if (asked.has_isovalue) isovalue = asked.isovalue;
         if (!isovalue) throw std::invalid_argument("constant data: give an isovalue");
-        RendererSettings settings = run::render_settings(render_setup(asked), felt.field, *isovalue,
-                                                         std::nullopt, progress_of_thread());
+        const run::RenderSetup setup = render_setup(asked);
+        std::vector<run::NoEffect> useless = run::without_effect(setup);
+        if (setup.layers && !setup.layers->layers.layers.empty()) {
+            useless.push_back({{"isovalue"}, "layers have levels of their own"});
+        }
+        run::refuse_without_effect(useless, {{"isovalue", asked.has_isovalue != 0}});
+        RendererSettings settings =
+            run::render_settings(setup, felt.field, *isovalue, std::nullopt, progress_of_thread());
         settings.transform = transform_from(transform);
         if (asked.scale != 0) settings.transform.scale = asked.scale;
         *out = new palpate_renderer{make_renderer(felt.field, *isovalue, settings)};

@@ -1,8 +1,13 @@
 // Volumes of the C interface: copied, adopted or loaded.
+#include <algorithm>
 #include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "bindings/c/handles.hpp"
 #include "bindings/c/structs.hpp"
+#include "palpate/run/no_effect.hpp"
 
 namespace palpate::c {
 namespace {
@@ -88,7 +93,14 @@ extern "C" PALPATE_API palpate_status palpate_volume_load(const char* name,
             if (!file) throw std::invalid_argument("series is for files");
             file->series = asked.series;
         }
-        *out = new palpate_volume{run::load(source, progress_of(asked, "loading was cancelled"))};
+        run::LoadedVolume loaded = run::load(source, progress_of(asked, "loading was cancelled"));
+        std::vector<run::NoEffect> useless = run::without_effect(loaded);
+        for (run::NoEffect& one : useless) {  // with the name that it has here
+            std::ranges::replace(one.names, std::string("time_step"), std::string("frame"));
+        }
+        run::refuse_without_effect(
+            useless, {{"series", asked.series != nullptr}, {"frame", asked.frame != 0}});
+        *out = new palpate_volume{std::move(loaded)};
     });
 }
 

@@ -107,8 +107,8 @@ typedef struct palpate_load_options {
     uint32_t size_of;
     int32_t smooth;     /* passes of the binomial kernel */
     int32_t dequantize; /* rounds of the filter that removes the steps of rounded data; 0: none */
-    int32_t frame;      /* only this frame of a sequence, from 1; 0: all */
-    const char *series; /* DICOM series: its UID or number; null: the only one */
+    int32_t frame;      /* only this frame of a sequence, from 1; 0: all. Refused for others */
+    const char *series; /* DICOM series: its UID or number; null: the only one. Refused for others */
     /* Called from this thread with 0 to 1; returns 0 to cancel. */
     int32_t (*progress)(double fraction, void *context);
     void *context;
@@ -186,7 +186,8 @@ typedef struct palpate_renderer palpate_renderer;
 
 typedef struct palpate_render_options {
     uint32_t size_of;
-    int32_t has_isovalue;  /* 0: the volume's own or a suggested one */
+    int32_t has_isovalue;  /* 0: the volume's own or a suggested one. Refused with layers and with
+                              ranges, which have levels of their own */
     double isovalue;
     double stiffness;      /* [N/mm] 0: 0.5, or what the device is rated for if that is less */
     double damping;        /* [N s/mm] */
@@ -201,7 +202,7 @@ typedef struct palpate_render_options {
     const char *layers;    /* a file or the name of a built-in set; null: none */
     const double *ranges;  /* low, high, low, high, ... [data units]: only these levels are touched, and
                               a press by `penetration` (0: 1) leads to the next range; null: none.
-                              A run refuses an isovalue beside them. Since 0.3 */
+                              Since 0.3 */
     size_t range_count;    /* pairs, at most 16 */
 } palpate_render_options;
 

@@ -127,6 +127,75 @@ TEST(Demo, a_misspelt_kind_is_no_volume_that_is_missing) {
     EXPECT_TRUE(folder.names().empty());
 }
 
+TEST(Demo, never_replaces_what_it_reads) {
+    const ScratchFolder folder;
+    const std::string ball = "convert synthetic:sphere:20x20x20 -q ";
+    for (const std::string name : {"edited.nrrd", "other.nrrd"}) {
+        ASSERT_EQ(palpate(folder, ball + name).status, 0);
+    }
+    support::put_bytes(folder / "path.csv", "x,y,z\n0,0,0\n1,0,0\n0,1,0\n");
+    std::filesystem::copy(folder / "other.nrrd", folder / "animation.png");
+    const auto names = folder.names();
+    const std::string before = support::bytes_of(folder / "edited.nrrd");
+    for (const auto& [words, input] : {std::pair{"sculpt edited.nrrd", "edited.nrrd"},
+                                       {"other.nrrd --tool path.csv", "path.csv"},
+                                       {"beating --labels animation.png", "animation.png"}}) {
+        const Outcome refused = palpate(folder, std::string("demo ") + words + " -i 50% -o .");
+        expect_failure(refused, 2, std::string(input) + " is an input");
+    }
+    EXPECT_EQ(folder.names(), names);
+    EXPECT_EQ(support::bytes_of(folder / "edited.nrrd"), before);
+    // Other files of its folder may be inputs.
+    EXPECT_EQ(palpate(folder, "demo edited.nrrd -i 50% -q --duration 0.1 --picture 64 -o .").status,
+              0);
+    EXPECT_EQ(support::bytes_of(folder / "edited.nrrd"), before);
+}
+
+TEST(Demo, touches_the_level_of_a_store_that_is_asked_for) {
+    const ScratchFolder folder;
+    ASSERT_EQ(palpate(folder, "convert synthetic:sphere:136x40x40 ball.zarr -q").status, 0);
+    const std::string line = "demo ball.zarr -i 50% --duration 0.05 --picture 64 -q -o out";
+    for (const auto& [level, size] : {std::pair{"0", "136 x 40 x 40"}, {"1", "68 x 20 x 20"}}) {
+        const Outcome done = palpate(folder, line + " --coarse-first --level " + level);
+        EXPECT_EQ(done.status, 0) << done.err;
+        EXPECT_TRUE(contains(done.err, "--coarse-first does nothing")) << done.err;
+        const std::string report = support::bytes_of(folder / "out/report.html");
+        EXPECT_TRUE(contains(report, size)) << level;
+    }
+    expect_failure(palpate(folder, line + " --level 0 --memory 100kB"), 3, "more memory");
+}
+
+TEST(Demo, traces_have_the_columns_of_a_tool_and_of_layers) {
+    const ScratchFolder folder;
+    const auto head_with = [&](const std::string& words) {
+        const std::string line = "demo synthetic:shepp-logan:32x32x32 --duration 0.1 --picture 64 ";
+        EXPECT_EQ(palpate(folder, line + "-q -o out " + words).status, 0) << words;
+        const std::string trace = support::bytes_of(folder / "out/trace.csv");
+        return trace.substr(0, trace.find('\n'));
+    };
+    EXPECT_TRUE(head_with("").ends_with(",update_ns"));
+    EXPECT_TRUE(head_with("--layers sample-head").ends_with(",update_ns,layer,inside"));
+    const std::string tool = head_with("--tool sphere:2");
+    EXPECT_TRUE(contains(tool, "proxy_qw") && contains(tool, "torque_x")) << tool;
+    EXPECT_TRUE(tool.ends_with(",contacts")) << tool;
+}
+
+TEST(Demo, needs_something_to_touch) {
+    const ScratchFolder folder;
+    for (const std::string kind : {"", "sculpt synthetic:sphere:20x20x20", "beating"}) {
+        expect_failure(palpate(folder, "demo " + kind + " -i 1000"), 2, "nothing to touch");
+    }
+    expect_failure(palpate(folder, "demo --layers sample-head -i 50"), 2, "with layers");
+    EXPECT_TRUE(folder.names().empty());
+    // Only a corner is solid, past which the hand goes.
+    const std::string head = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8 8\nencoding: raw\n\n";
+    for (const std::string name : {"f_0.nrrd", "f_1.nrrd"}) {
+        support::put_bytes(folder / name, head + '\xff' + std::string(511, '\0'));
+    }
+    expect_failure(palpate(folder, "demo beating f_%d.nrrd -i 50% -q"), 2, "meets no surface");
+    EXPECT_EQ(folder.names(), (std::vector<std::string>{"f_0.nrrd", "f_1.nrrd"}));
+}
+
 TEST(Demo, renders_forces_at_any_rate) {
     const ScratchFolder folder;
     ASSERT_EQ(palpate(folder, quick + "-o out -q --rate 20 -k 0.05").status, 0);

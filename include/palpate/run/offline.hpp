@@ -42,6 +42,9 @@ struct OfflineSinks {
     std::function<void(double fraction)> progress;
 };
 
+/// Columns that a trace has with these settings. `streamed`: the samples are those of a store.
+io::TraceExtras trace_extras(const RendererSettings& settings, bool streamed = false);
+
 /// For OfflineSinks::change, with a store: waits before each tick until all samples that it may
 /// need are in memory, so the ticks are those of the whole volume. Keeps references to both
 /// arguments. Null for other volumes. `tell` is called repeatedly during the wait, and may throw.

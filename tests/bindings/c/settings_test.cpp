@@ -128,12 +128,20 @@ TEST(CRanges, only_their_levels_are_touched) {
     palpate_volume_destroy(volume);
     const std::array<double, 2> range{150, 160};  // from 10 mm
     PALPATE_STRUCT(palpate_render_options, options);
-    options.has_isovalue = 1;
-    options.isovalue = 100;
     options.ranges = range.data();
     palpate_renderer* renderer = nullptr;
     EXPECT_EQ(palpate_renderer_create(field, &options, nullptr, &renderer), PALPATE_INVALID);
     options.range_count = 1;
+    const auto refuses_isovalue = [&](palpate_render_options with) {
+        with.has_isovalue = 1;
+        with.isovalue = 100;
+        EXPECT_EQ(palpate_renderer_create(field, &with, nullptr, &renderer), PALPATE_INVALID);
+        EXPECT_TRUE(std::string(palpate_last_error()).starts_with("isovalue does nothing: "));
+    };
+    refuses_isovalue(options);
+    PALPATE_STRUCT(palpate_render_options, layered);
+    layered.layers = "sample-head";
+    refuses_isovalue(layered);
     ASSERT_EQ(palpate_renderer_create(field, &options, nullptr, &renderer), PALPATE_OK)
         << palpate_last_error();
     for (int i = 0; i < 1000; ++i) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <thread>
 
+#include "palpate/io/volume_file.hpp"
 #include "palpate/renderer.hpp"
 #include "palpate/run/setup.hpp"
 #include "support/eventually.hpp"
@@ -108,6 +109,24 @@ TEST(CVolume, a_frame_of_a_sequence_is_loaded_by_its_number_from_1_and_counts_as
     EXPECT_EQ(frames(20), std::pair(PALPATE_OK, 1));
     EXPECT_EQ(frames(21).first, PALPATE_INVALID);
     EXPECT_EQ(frames(-1).first, PALPATE_INVALID);
+}
+
+TEST(CVolume, options_that_change_nothing_are_refused) {
+    const support::ScratchFolder folder;
+    const auto ball = run::source_named("synthetic:sphere:12x12x12");
+    io::write_volume(run::load(ball).volume, folder / "still.nrrd");
+    const auto refusal = [&](std::int32_t frame, const char* series) {
+        PALPATE_STRUCT(palpate_load_options, options);
+        options.frame = frame;
+        options.series = series;
+        palpate_volume* volume = nullptr;
+        const std::string name = (folder / "still.nrrd").string();
+        EXPECT_EQ(palpate_volume_load(name.c_str(), &options, &volume), PALPATE_INVALID);
+        EXPECT_EQ(volume, nullptr);
+        return std::string(palpate_last_error());
+    };
+    EXPECT_TRUE(refusal(1, nullptr).starts_with("frame does nothing: ")) << refusal(1, nullptr);
+    EXPECT_TRUE(refusal(0, "1").starts_with("series does nothing: ")) << refusal(0, "1");
 }
 
 TEST(CStructs, of_an_earlier_version_are_filled_as_far_as_they_go) {
