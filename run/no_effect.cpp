@@ -69,6 +69,11 @@ std::vector<NoEffect> without_effect(const LoadedVolume& loaded) {
     return found;
 }
 
+std::vector<NoEffect> without_effect(const Samples& samples) {
+    if (samples.frames().size() > 1) return {};
+    return {{{"time", "Moment", "Speed"}, "these samples are not a sequence"}};
+}
+
 std::vector<NoEffect> without_effect(const RenderSetup& setup) {
     std::vector<NoEffect> found;
     if (std::holds_alternative<io::PointSpec>(setup.tool)) {

@@ -32,13 +32,10 @@ std::string utc_now() {
 
 /// After such a command, a hand that stands still may touch what it did not touch before.
 bool moves_contact(const Command& command) {
-    const Overloaded moves{[](const ForceSettings&) { return false; },
-                           [](const Friction&) { return false; },
-                           [](const DeviceLimits&) { return false; },
-                           [](const command::Forces&) { return false; },
-                           [](const command::Speed&) { return false; },
-                           [](const command::Samples&) { return false; },
-                           [](const auto&) { return true; }};
+    const Overloaded moves{
+        [](const ForceSettings&) { return false; },    [](const Friction&) { return false; },
+        [](const DeviceLimits&) { return false; },     [](const command::Forces&) { return false; },
+        [](const command::Samples&) { return false; }, [](const auto&) { return true; }};
     return std::visit(moves, command);
 }
 
@@ -250,6 +247,13 @@ void Run::send(const Command& asked) {
     if (!running_) throw WrongState("the run has stopped, so it carries out no more commands");
     const Command command = placed_beside(asked, data_->loaded());
     check(command, settings_, kind_of(field_));
+    // Of the data, so of all its runs. Throws for data that is no sequence.
+    if (const auto* to = std::get_if<command::Speed>(&command)) {
+        return data_->player().play(to->speed);
+    }
+    if (const auto* to = std::get_if<command::Moment>(&command)) {
+        return data_->player().seek(to->time);
+    }
     if (!servo.send(command)) {
         throw QueueFull("too many commands at once: one was left out");
     }

@@ -1,30 +1,18 @@
-// The thread of a caller's device: read, write, read, ... at a steady rate. The servo only ever
-// meets the newest reading and the newest force.
+// A device whose reading and writing are callbacks of the C interface's caller.
 #include "bindings/c/own_device.hpp"
 
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <chrono>
-#include <cmath>
 #include <cstdio>
-#include <mutex>
-#include <optional>
 
 #include "bindings/c/handles.hpp"
 #include "bindings/c/runtimes.hpp"
 #include "bindings/c/structs.hpp"
-#include "devices/claim.hpp"
-#include "devices/linked_device.hpp"
+#include "devices/own_device.hpp"
 
 namespace palpate::c {
 namespace {
-
-/// How long the end of a device waits for its thread.
-constexpr std::chrono::milliseconds longest_end{500};
-
-/// Why the newest reading counts for nothing.
-enum class Trouble : std::uint8_t { none, lost, no_pose, threw };
 
 DeviceInfo info_from(const palpate_own_device& asked) {
     DeviceInfo info;
@@ -32,8 +20,6 @@ DeviceInfo info_from(const palpate_own_device& asked) {
     info.model = asked.model ? asked.model : info.name;
     info.limits.maximum_force = asked.maximum_force;
     info.limits.maximum_torque = asked.maximum_torque;
-    info.limits.rate = std::min(info.limits.rate, asked.rate);
-    info.limits.delay = devices::exchange_delay(1 / asked.rate);
     if (asked.stiffness != 0) info.stiffness = asked.stiffness;
     if (asked.physical_damping != 0) info.limits.physical_damping = asked.physical_damping;
     const Vec3 low = vec3(asked.workspace_low), high = vec3(asked.workspace_high);
@@ -45,7 +31,7 @@ DeviceInfo info_from(const palpate_own_device& asked) {
     info.has_orientation = asked.has_orientation != 0;
     info.has_gripper = asked.has_gripper != 0;
     info.buttons = asked.buttons;
-    return info;
+    return devices::at_rate(info, asked.rate);
 }
 
 void check(const palpate_own_device& asked, const DeviceInfo& info) {
@@ -78,124 +64,34 @@ std::string claim_of(const palpate_own_device& own) {
     return "the device '" + name_of(own) + text.data();
 }
 
-}  // namespace
-
-std::string name_of(const palpate_own_device& asked) {
-    return asked.name ? asked.name : "own";
-}
-
-/// What the thread uses: it owns this as well, so that a callback that hangs may outlive the run.
-class OwnDevice::Served final : public devices::LinkedDevice {
+class Callbacks final : public devices::OwnFunctions {
   public:
-    explicit Served(const palpate_own_device& asked)
-        : callbacks_(with_defaults(asked)), info_(info_from(callbacks_)) {
-        check(callbacks_, info_);
-        claim_.emplace(claim_of(asked));
-    }
+    Callbacks(const palpate_own_device& asked, const DeviceInfo& info)
+        : OwnFunctions(info, asked.rate, claim_of(asked)), callbacks_(asked) {}
 
-    DeviceInfo info() const override { return info_; }
-    std::string problem() const override;
-
-    /// The thread's: until quit(), a last exchange, which sends the zero, and close().
-    void run() noexcept;
-    void quit() noexcept { quit_ = true; }
-    bool has_ended() const noexcept { return ended_; }
-    /// The run is gone, and the thread goes on.
-    void leave() {
-        const std::lock_guard lock(claiming_);
-        if (claim_) claim_->leave();
+    std::string problem() const override {
+        const char* const trouble = trouble_;
+        return trouble ? "the application's device '" + info_.name + "' " + trouble : "";
     }
 
   private:
-    void exchange() noexcept;
+    void begin() noexcept override {
+        devices::prepare_device_thread();
+        let_runtimes_stop_this_thread();
+        calls_back = true;
+    }
+    void exchange() noexcept override;
+    void close() noexcept override;
+    void fail(DeviceStatus status, const char* trouble) noexcept {
+        trouble_ = trouble;
+        link_.report(status, devices::monotonic_ns());
+    }
 
     const palpate_own_device callbacks_;
-    const DeviceInfo info_;
-    std::mutex claiming_;
-    std::optional<devices::Claim> claim_;  // until the thread ends
-    std::atomic<Trouble> trouble_{Trouble::none};
-    std::atomic<bool> quit_{false}, ended_{false};
+    std::atomic<const char*> trouble_{nullptr};  // why the newest reading counts for nothing
 };
 
-OwnDevice::OwnDevice(const palpate_own_device& asked)
-    : served_(std::make_shared<Served>(asked)), thread_([served = served_] { served->run(); }) {}
-
-OwnDevice::~OwnDevice() {
-    served_->stop();
-    served_->quit();
-    const auto latest = std::chrono::steady_clock::now() + longest_end;
-    while (!served_->has_ended() && std::chrono::steady_clock::now() < latest) {
-        std::this_thread::sleep_for(std::chrono::microseconds(100));
-    }
-    if (served_->has_ended()) {
-        thread_.join();
-    } else {
-        served_->leave();
-        thread_.detach();
-    }
-}
-
-DeviceInfo OwnDevice::info() const {
-    return served_->info();
-}
-
-std::string OwnDevice::problem() const {
-    return served_->problem();
-}
-
-DeviceReading OwnDevice::read(double time) {
-    return served_->read(time);
-}
-
-void OwnDevice::write(const Wrench& wrench, double time) {
-    served_->write(wrench, time);
-}
-
-void OwnDevice::stop() noexcept {
-    served_->stop();
-}
-
-bool OwnDevice::is_stopping() const noexcept {
-    return served_->is_stopping();
-}
-
-std::string OwnDevice::Served::problem() const {
-    const std::string device = "the application's device '" + info_.name + "' ";
-    switch (trouble_.load()) {
-        case Trouble::lost:
-            return device + "reports that it is lost";
-        case Trouble::no_pose:
-            return device + "gives a position or an orientation that is not finite";
-        case Trouble::threw:
-            return device + "threw an exception";
-        default:
-            return {};
-    }
-}
-
-void OwnDevice::Served::run() noexcept {
-    devices::prepare_device_thread();
-    let_runtimes_stop_this_thread();
-    calls_back = true;
-    const auto period = static_cast<std::int64_t>(1e9 / callbacks_.rate);  // [ns]
-    std::int64_t next = devices::monotonic_ns();
-    // Asked before the exchange: the last one comes after the stop, so it sends the zero.
-    for (bool last = false; !last;) {
-        last = quit_;
-        exchange();
-        next = std::max(next + period, devices::monotonic_ns() - period);
-        if (!last) devices::sleep_until(next);
-    }
-    try {
-        if (callbacks_.close) callbacks_.close(callbacks_.context);
-    } catch (...) {  // NOLINT(bugprone-empty-catch): nobody is left to be told
-    }
-    const std::lock_guard lock(claiming_);
-    claim_.reset();
-    ended_ = true;
-}
-
-void OwnDevice::Served::exchange() noexcept {
+void Callbacks::exchange() noexcept {
     try {
         auto reading = sized<palpate_reading>();
         bool lost = callbacks_.read(&reading, callbacks_.context) != 0;
@@ -204,10 +100,7 @@ void OwnDevice::Served::exchange() noexcept {
         put(newest.force, wrench.force);
         put(newest.torque, wrench.torque);
         lost |= callbacks_.write(&wrench, callbacks_.context) != 0;
-        if (lost) {
-            trouble_ = Trouble::lost;
-            return link_.report(DeviceStatus::lost, devices::monotonic_ns());
-        }
+        if (lost) return fail(DeviceStatus::lost, "reports that it is lost");
         const bool known = reading.status >= 0 && reading.status <= PALPATE_DEVICE_FINISHED;
         DeviceReading measured;
         measured.position = vec3(reading.position);
@@ -218,15 +111,35 @@ void OwnDevice::Served::exchange() noexcept {
         measured.status = known ? static_cast<DeviceStatus>(reading.status) : DeviceStatus::fault;
         if (measured.status == DeviceStatus::ready &&
             !(measured.position.allFinite() && measured.orientation.allFinite())) {
-            trouble_ = Trouble::no_pose;
-            return link_.report(DeviceStatus::fault, devices::monotonic_ns());
+            return fail(DeviceStatus::fault,
+                        "gives a position or an orientation that is not finite");
         }
-        trouble_ = Trouble::none;
+        trouble_ = nullptr;
         link_.report(measured, devices::monotonic_ns());
     } catch (...) {
-        trouble_ = Trouble::threw;
-        link_.report(DeviceStatus::fault, devices::monotonic_ns());
+        fail(DeviceStatus::fault, "threw an exception");
     }
+}
+
+void Callbacks::close() noexcept {
+    exchange();  // after the stop, so it sends the zero
+    try {
+        if (callbacks_.close) callbacks_.close(callbacks_.context);
+    } catch (...) {  // NOLINT(bugprone-empty-catch): nobody is left to be told
+    }
+}
+
+}  // namespace
+
+std::string name_of(const palpate_own_device& asked) {
+    return asked.name ? asked.name : "own";
+}
+
+std::unique_ptr<Device> make_own_device(const palpate_own_device& asked) {
+    const palpate_own_device own = with_defaults(asked);
+    const DeviceInfo info = info_from(own);
+    check(own, info);
+    return std::make_unique<devices::OwnDevice>(std::make_shared<Callbacks>(own, info));
 }
 
 }  // namespace palpate::c

@@ -26,7 +26,7 @@ void choose_device(const palpate_run_options& asked, run::Setup& setup) {
             palpate_own_device named = own;
             named.name = name.c_str();
             named.model = model.c_str();
-            return std::make_unique<OwnDevice>(named);
+            return make_own_device(named);
         };
     }
     if (asked.device && setup.device.name != asked.device) {  // own names may have a colon

@@ -53,8 +53,19 @@ class GilReleased {
     PyThreadState* thread_;
 };
 
-/// The same for a loop over so many rows. A short one keeps the GIL, because handing it over and
-/// waiting for it would take longer.
+/// As py::gil_scoped_acquire. The thread waits in the same way if the interpreter has ended.
+class GilTaken {
+  public:
+    GilTaken() {
+        GilReleased::until_the_end([this] { taken_.emplace(); });
+    }
+
+  private:
+    std::optional<py::gil_scoped_acquire> taken_;
+};
+
+/// As GilReleased for a loop over so many rows. A short one keeps the GIL, because handing it over
+/// and waiting for it would take longer.
 class GilReleasedForRows {
   public:
     explicit GilReleasedForRows(std::size_t rows) {

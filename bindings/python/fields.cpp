@@ -98,10 +98,7 @@ void bind_samples(py::module_& module) {
             "volume",
             [](const Samples& self, double time) {
                 check_numbers("time", time, ranges::finite);
-                if (self.frames().size() < 2) {
-                    run::refuse_without_effect({{{"time"}, "these samples are not a sequence"}},
-                                               {{"time", time != 0}});
-                }
+                run::refuse_without_effect(run::without_effect(self), {{"time", time != 0}});
                 return flattened(self, self.moment_at(time), ctrl_c());
             },
             py::arg("time") = 0.0, py::call_guard<GilReleased>(),

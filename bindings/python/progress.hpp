@@ -17,8 +17,7 @@ using ProgressFunction = std::optional<py::function>;
 /// Throws what the function throws, and KeyboardInterrupt. The function has to outlive the result.
 inline OnProgress progress_of(const ProgressFunction& function) {
     return [&function](double fraction) {
-        std::optional<py::gil_scoped_acquire> gil;
-        GilReleased::until_the_end([&] { gil.emplace(); });
+        const GilTaken gil;
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
         if (function) called(*function, fraction);
     };

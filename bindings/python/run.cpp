@@ -4,6 +4,7 @@
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
 #include "bindings/python/commands.hpp"
+#include "bindings/python/edited_data.hpp"
 #include "bindings/python/progress.hpp"
 #include "bindings/python/python_device.hpp"
 #include "bindings/python/record.hpp"
@@ -105,8 +106,11 @@ void bind_setup(py::module_& module) {
 }
 
 struct LiveRun : run::Run {
-    LiveRun(std::shared_ptr<run::Data> data, const run::Setup& setup, PythonDevice* its_device)
-        : Run(std::move(data), setup, ctrl_c()), python_device(its_device) {}
+    LiveRun(const std::shared_ptr<EditedData>& its_data, const run::Setup& setup,
+            PythonDevice* its_device)
+        : Run({its_data, &its_data->data}, setup, ctrl_c()),
+          edited(its_data),
+          python_device(its_device) {}
 
     /// False if the device's thread goes on for good (PythonDevice::finish()). A recording ends in
     /// any case.
@@ -127,6 +131,7 @@ struct LiveRun : run::Run {
     }
 
     OwnProcess process;
+    const std::shared_ptr<EditedData> edited;
     PythonDevice* const python_device;  ///< where the device is written in Python, the run's own
 };
 
@@ -158,16 +163,16 @@ namespace palpate::python {
 namespace {
 
 /// For a Run, returns its data, which is then shared.
-std::shared_ptr<run::Data> data_from(const Feelable& what, const run::PlaybackSetup& playback) {
+std::shared_ptr<EditedData> data_from(const Feelable& what, const run::PlaybackSetup& playback) {
     if (py::isinstance<LiveRun>(what)) {
         const auto& other = what.cast<const LiveRun&>();
         other.process.check();
-        return other.shared_data();
+        return other.edited;
     }
     const py::module_ module = py::module_::import("palpate._palpate");
     const auto loaded = is_store(what) ? module.attr("LoadedVolume")(what).cast<run::LoadedVolume>()
                                        : what.cast<run::LoadedVolume>();
-    return made_without_gil<run::Data>(loaded, playback);
+    return made_edited_data(loaded, playback);
 }
 
 /// Throws std::invalid_argument for settings that change nothing: only the first run on a sequence
@@ -196,8 +201,8 @@ std::shared_ptr<LiveRun> make(const Feelable& what, const std::optional<Setup>& 
     run::refuse_without_effect(
         {{{"device_rate"}, "there is no device in Python"}},
         {{"device_rate", device.is_none() && device_rate != usual_device_rate}});
-    std::shared_ptr<run::Data> data = data_from(what, setup.playback);
-    if (given) check_playback(*given, what, *data);
+    std::shared_ptr<EditedData> data = data_from(what, setup.playback);
+    if (given) check_playback(*given, what, data->data);
     PythonDevice* python_device = nullptr;
     if (!device.is_none()) {
         // Made here, with the GIL: copies of the setup must not hold a Python object.
@@ -208,7 +213,7 @@ std::shared_ptr<LiveRun> make(const Feelable& what, const std::optional<Setup>& 
         setup.open_device = [made](const auto&, const auto&) { return std::move(*made); };
     }
     const std::shared_ptr<LiveRun> made(
-        without_gil([&] { return new LiveRun(std::move(data), setup, python_device); }),
+        without_gil([&] { return new LiveRun(data, setup, python_device); }),
         &destroy_session<LiveRun>);
     warn_of_level(given.value_or(Setup{}).asked, made->field(), made->isovalue(), 2);
     if (const auto& layers = made->setup().render.layers) {
@@ -254,7 +259,7 @@ void bind_editing(py::class_<LiveRun, std::shared_ptr<LiveRun>>& run) {
             },
             py::arg("brush"), Unlocked(), "A HandBrush that follows the proxy; None: only feel.")
         .def(
-            "save", [](R& r, const fs::path& path) { return r.data().save(path, ctrl_c()); },
+            "save", [](R& r, const fs::path& path) { return r.edited->save(path); },
             py::arg("path"), Unlocked(), "Writes the samples as they are now. Raises OutputError.");
 }
 
@@ -272,12 +277,17 @@ void send(LiveRun& r, const Sent& sent) {
 }  // namespace
 
 void bind_run(py::module_& module) {
+    tell_at_exit(module);
     bind_setup(module);
     using R = LiveRun;
     py::class_<R, std::shared_ptr<R>> live(
         module, "Run",
         "A live run: a servo with its device, data and recording. Use it as a context manager.\n"
-        "By one thread at a time.");
+        "By one thread at a time. Edits that were not saved when the last run on their data goes,\n"
+        "or when the program ends, are a ResourceWarning. After an error they are kept in a new\n"
+        "folder for temporary files, and a UserWarning names the file: if a save() or a with "
+        "block\n"
+        "failed, or an exception ended the program.");
     live.def(py::init(&make), py::arg("loaded"), py::arg("setup") = py::none(), py::kw_only(),
              py::arg("device") = py::none(), py::arg("device_rate") = usual_device_rate,
              "loaded: from load(), a Volume, a Store, or another Run: then both are hands in the\n"

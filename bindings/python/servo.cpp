@@ -10,6 +10,7 @@
 #include "bindings/python/python_device.hpp"
 #include "bindings/python/renderer.hpp"
 #include "bindings/python/without_gil.hpp"
+#include "palpate/run/no_effect.hpp"
 
 namespace palpate::python {
 namespace {
@@ -19,9 +20,7 @@ struct DeviceServo {
     DeviceServo(Renderer renderer, std::unique_ptr<PythonDevice> its_device,
                 const ServoSettings& settings)
         : python_device(std::move(its_device)),
-          field(renderer.field),
-          isovalue(renderer.proxy.isovalue),
-          force(renderer.settings.force),
+          asked{renderer, {}},
           servo(Session{std::move(renderer), {}}, *python_device, settings) {}
 
     /// False if the device's thread goes on for good (PythonDevice::finish()).
@@ -38,9 +37,7 @@ struct DeviceServo {
     OwnProcess process;
     std::atomic<bool> stopped{false};
     std::unique_ptr<PythonDevice> python_device;
-    Field field;
-    double isovalue;
-    ForceSettings force;  ///< as sent last
+    Session asked;  ///< with all that was sent
     Servo servo;
 };
 
@@ -74,13 +71,19 @@ Held make_servo(const SharedRenderer& renderer, const py::object& device, double
 void send_to_servo(DeviceServo& s, const Sent& sent) {
     s.process.check();
     if (s.stopped) throw std::logic_error("the servo has stopped, so it carries out no commands");
-    const Command command = command_of(sent, s.field, s.isovalue, s.force);
+    const Renderer& asked = s.asked.renderer;
+    const Command command =
+        command_of(sent, asked.field, asked.isovalue_without_layers.value_or(asked.proxy.isovalue),
+                   asked.settings.force);
+    run::refuse_without_effect(run::without_effect(asked.field.samples()),
+                               {{"Moment", std::holds_alternative<command::Moment>(command)},
+                                {"Speed", std::holds_alternative<command::Speed>(command)}});
     if (!s.servo.send(command)) {
         const py::object type = py::module_::import("palpate.errors").attr("QueueFull");
         PyErr_SetString(type.ptr(), "no room for another command: send fewer");
         throw py::error_already_set();
     }
-    if (const auto* force = std::get_if<ForceSettings>(&command)) s.force = *force;
+    apply(s.asked, command);
 }
 
 }  // namespace

@@ -9,18 +9,23 @@
 
 namespace palpate::python {
 
+/// Whether or not the caller has the GIL.
+template <class T>
+void destroy_without_gil(T* object) {
+    if (!PyGILState_Check()) {
+        delete object;
+        return;
+    }
+    const GilReleased unlocked;
+    delete object;
+}
+
 /// Made and destroyed without the GIL, whoever lets go of it last; never destroyed in a forked
 /// child.
 template <class T, class... Arguments>
 std::shared_ptr<T> made_without_gil(Arguments&&... arguments) {
     const auto destroy = [process = OwnProcess()](T* object) {
-        if (!process.is_here()) return;
-        if (PyGILState_Check()) {
-            const GilReleased unlocked;
-            delete object;
-        } else {
-            delete object;
-        }
+        if (process.is_here()) destroy_without_gil(object);
     };
     const GilReleased unlocked;
     return {new T(std::forward<Arguments>(arguments)...), destroy};

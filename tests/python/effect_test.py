@@ -233,6 +233,17 @@ def run(**setup):
     return palpate.Run(VOLUME, palpate.Setup(real_time=False, **setup))
 
 
+def sent(*commands, field=CUBIC):
+    with palpate.Servo(palpate.Renderer(field, ISOVALUE), Still(), real_time=False) as servo:
+        for command in commands:
+            servo.send(command)
+
+
+def sent_live(command):
+    with run() as running:
+        running.send(command)
+
+
 LAYER = palpate.Layer(name="a", level=ISOVALUE)
 RAW = palpate.RawLayout(size=(16, 16, 16), type="uint8")
 USELESS = [
@@ -254,6 +265,10 @@ USELESS = [
     (lambda: palpate.Samples(VOLUME).volume(2.0), "time does nothing: these samples are not a sequence"),
     (lambda: followed(scale=2.0), "scale does nothing: it is for the threshold of a penetrability"),
     (lambda: palpate.command.UseLayers(None, same_surfaces=True), "same_surfaces does nothing: there are no layers"),
+    (lambda: sent(palpate.command.Speed(2)), "Speed does nothing: these samples are not a sequence"),
+    (lambda: sent(palpate.command.Moment(2)), "Moment does nothing: these samples are not a sequence"),
+    (lambda: sent_live(palpate.command.Speed(2)), "this volume is no sequence: there is nothing to play"),
+    (lambda: sent_live(palpate.command.Moment(2)), "this volume is no sequence: there is nothing to play"),
     (lambda: palpate.Run(VOLUME, device_rate=5.0), "device_rate does nothing: there is no device in Python"),
     (lambda: palpate.Run(VOLUME, palpate.Setup(device="mouse"), device=Still()), "Setup.device does nothing: the device in Python is used"),
     (lambda: run(isovalue=ISOVALUE, render=palpate.RenderSetup(penetrability=palpate.Penetrability(ranges=[(50, 90)]))),
@@ -297,6 +312,15 @@ def test_a_setting_that_changes_nothing_in_a_replay_is_refused_there_alone(setup
         played(**setup)
     assert str(refused.value) == text
     palpate.Renderer(CUBIC, ISOVALUE, palpate.RenderSetup(**setup))  # a session may use another tool, and pause
+
+
+def test_samples_that_become_a_sequence_may_be_played():
+    frames = palpate.Samples([(0.0, VOLUME), (1.0, OTHER)])
+    commands = palpate.command.Moment(0.5), palpate.command.Speed(2)
+    sent(palpate.command.Samples(frames), *commands, field=palpate.Field(VOLUME))
+    sent(*commands, field=palpate.Field(frames))
+    with pytest.raises(ValueError, match="^Speed does nothing"):
+        sent(palpate.command.Samples(palpate.Samples(VOLUME)), commands[1], field=palpate.Field(frames))
 
 
 def test_settings_that_change_something_are_not_refused():

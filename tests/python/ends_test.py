@@ -8,6 +8,8 @@ FIELD = palpate.Field(SCENE.volume)
 
 
 class Still:
+    position = (0, 0, 0)
+
     def __init__(self, **info):
         self.more = info
 
@@ -15,7 +17,7 @@ class Still:
         return palpate.DeviceInfo(name="still", **self.more)
 
     def read(self):
-        return palpate.DeviceReading(status="ready")
+        return palpate.DeviceReading(position=self.position, status="ready")
 
 
 def servo(device, **render):
@@ -59,3 +61,15 @@ def test_a_device_without_room_is_refused(high):
         palpate.Run(SCENE.volume, palpate.Setup(real_time=False), device=device)
     with pytest.raises(ValueError, match="workspace_high has to be above workspace_low"):
         palpate.fit_workspace(FIELD.geometry, device.info())
+
+
+def test_penetrability_begins_at_the_level_that_was_asked_for_last():
+    free = Still()
+    free.position = (60, 0, 0)
+    with servo(free) as session:
+        session.send(palpate.command.Isovalue(90))
+        session.send(palpate.Penetrability(threshold=5))
+        session.send(palpate.command.Freeze(True))
+        while not (session.snapshot() and session.snapshot().frozen):
+            pass
+        assert session.snapshot().tick.isovalue == 90

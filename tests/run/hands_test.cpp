@@ -127,6 +127,39 @@ TEST(Hands, that_were_recorded_play_again_together_as_each_alone) {
     EXPECT_THROW(run::Run(data, test::with_device(both + ",hand=3")), io::InputError);
 }
 
+TEST(Hands, play_their_sequence_together_by_a_command_to_one_of_them) {
+    const auto data = test::stepped_data(test::loaded("synthetic:beating:24x24x24"));
+    Run first(data, test::with_device(holding)), second(data, test::with_device(circling));
+    first.start();
+    second.start();
+    const auto both_reach = [&](auto&& holds) {
+        const auto step = [&] {
+            first.step();
+            second.step();
+        };
+        return steps_until(
+            step, [&] { return data->is_settled(); },
+            [&] {
+                const auto now = first.snapshot(), other = second.snapshot();
+                return now && other && holds(*now) && holds(*other);
+            });
+    };
+    first.send(command::Speed{-2});
+    EXPECT_EQ(data->player().state().speed, -2);
+    EXPECT_TRUE(both_reach([](const Snapshot& now) { return now.speed == -2; }));
+    first.send(command::Speed{0});
+    first.send(command::Moment{0.25});
+    EXPECT_TRUE(both_reach([](const Snapshot& now) { return now.session.moment == 0.25; }));
+    EXPECT_EQ(data->player().state().time, 0.25);
+}
+
+TEST(Hands, on_a_volume_refuse_commands_for_a_sequence) {
+    Run run(shared_ball(), test::with_device(holding));
+    run.start();
+    EXPECT_THROW(run.send(command::Speed{1}), std::invalid_argument);
+    EXPECT_THROW(run.send(command::Moment{1}), std::invalid_argument);
+}
+
 TEST(Hands, one_whose_device_fails_ends_alone) {
     const ScratchFolder folder;
     const auto undisturbed = alone(circling, 900, folder / "alone.csv");

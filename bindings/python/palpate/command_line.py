@@ -3,11 +3,13 @@
 
 import argparse
 import difflib
+import io
 import math
 import os
 import re
 import signal
 import sys
+import traceback
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, NoReturn, Optional, TextIO
@@ -118,6 +120,8 @@ class Parser(argparse.ArgumentParser):
         # Closed streams: what is written fails for standard output, and is lost for standard error.
         sys.stdout = sys.stdout or open(os.open(os.devnull, os.O_RDONLY), "w", encoding="utf-8")
         sys.stderr = sys.stderr or open(os.devnull, "w", encoding="utf-8")
+        if isinstance(sys.stdout, io.TextIOWrapper):
+            sys.stdout.reconfigure(errors="surrogateescape")  # names of files may be any bytes
         if "-h" in words or "--help" in words:
             self.exit(0, self.format_help())
         if "--version" in words:
@@ -137,6 +141,12 @@ class Parser(argparse.ArgumentParser):
             if action.dest not in self.given:
                 self.error(f"{(action.option_strings or [str(action.metavar)])[-1]}: it is needed, as in {self.examples[0]}")
         return chosen
+
+    def warn_of_no_effect(self, options: Sequence[str], why: str) -> None:
+        """Options, without dashes, that change nothing beside the others."""
+        useless = [f"--{option}" for option in options if option.replace("-", "_") in self.given]
+        if useless:
+            tell(f"warning: {', '.join(useless)} {'does' if len(useless) == 1 else 'do'} nothing: {why}")
 
     def _refuse_misspelt(self, words: Sequence[str]) -> None:
         known = self._option_string_actions
@@ -268,7 +278,18 @@ def run(work: Callable[[], Any], interrupted: str = "interrupted", load: Callabl
         if str(stop):
             tell(stop)
         return stop.status
-    except (Error, ValueError, OSError, RuntimeError, EOFError) as error:
-        tell("standard input ended before an answer" if isinstance(error, EOFError) else error)
+    except (Error, ValueError, OSError, RuntimeError) as error:
+        tell(error)
         return next((status for kind, status in STATUS if isinstance(error, kind)), 2)
+    except EOFError:
+        tell("standard input ended before an answer")
+        return 2
+    except MemoryError:
+        tell("not enough memory: use a smaller volume, or one of fewer bits")
+        return 3
+    except Exception as error:
+        if os.environ.get("PALPATE_TRACEBACK"):
+            traceback.print_exc()
+        tell(f"{type(error).__name__}: {error} (PALPATE_TRACEBACK=1 shows where)")
+        return 2
     return 0

@@ -428,7 +428,11 @@ def _convert(scheduler, workers, given):
     def started():
         cluster = scheduler or stack.enter_context(LocalCluster(
             n_workers=workers or os.cpu_count() or 1, threads_per_worker=1, dashboard_address="127.0.0.1:0"))
-        client = stack.enter_context(Client(cluster))
+        try:
+            client = stack.enter_context(Client(cluster))
+        except OSError as error:
+            raise ValueError(f"--scheduler {scheduler}: does not answer: start one with 'dask scheduler' and give its address, or give "
+                             "--workers instead") from error
         remark(f"dashboard: {client.dashboard_link}")
         return client
 

@@ -99,10 +99,12 @@ def next_trial(plan: Plan, correct: Sequence[float]) -> Optional[Trial]:
 def read(path: _Path, plan: Optional[Plan] = None) -> list[_Row]:
     """Rows of a session: dicts of numbers, and a text `felt`. With a plan, they have to be its trials. Raises InputError."""
     try:
-        with open(path, encoding="utf-8", newline="") as file:
+        with open(path, encoding="utf-8", errors="surrogateescape", newline="") as file:  # names of files may be any bytes
             lines = list(csv.reader(file))
-    except (OSError, UnicodeError) as error:
-        raise InputError(f"{path}: {getattr(error, 'strerror', None) or 'is no text'}: check the name") from error
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror}: check the name") from error
+    except csv.Error as error:
+        raise InputError(f"{path}: no session of trials") from error
     rows = []
     for number, line in enumerate(lines[1:], 2):
         try:
@@ -120,6 +122,12 @@ def read(path: _Path, plan: Optional[Plan] = None) -> list[_Row]:
     return rows
 
 
+def _line(cells: Sequence[Any]) -> str:
+    text = io.StringIO(newline="")
+    csv.writer(text, lineterminator="\n").writerow(cells)
+    return text.getvalue()
+
+
 def session(path: _Path, plan: Plan, ask: Callable[[Trial], int], felt: str = "") -> list[_Row]:
     """Asks all trials that are missing in the file. ask(trial): 1 or 2, the touch that had more. Every answer is in the file before the
     next trial begins. `felt`: which setting of what, the same for all trials of a file. Raises InputError, OutputError."""
@@ -135,10 +143,8 @@ def session(path: _Path, plan: Plan, ask: Callable[[Trial], int], felt: str = ""
             raise OutputError(f"{path}: another session writes to it: wait for its end, or use another file") from error
 
         def put_down(line: Sequence[Any]) -> None:
-            text = io.StringIO(newline="")
-            csv.writer(text, lineterminator="\n").writerow(line)
             try:
-                file.write(text.getvalue().encode())
+                file.write(_line(line).encode(errors="surrogateescape"))
                 sync(path)
             except OSError as error:
                 raise OutputError(f"{path}: cannot be written: {error.strerror}") from error
@@ -152,6 +158,8 @@ def session(path: _Path, plan: Plan, ask: Callable[[Trial], int], felt: str = ""
                 raise InputError(f"{path}: is a session with {other['felt']}, not with {felt}: use another file")
         while trial := next_trial(plan, [row["correct"] for row in rows]):
             answer = ask(trial)
+            if answer not in (1, 2):
+                raise ValueError(f"ask() has to return 1 or 2, not {answer!r}")
             right = int((answer == 2) == (trial.second > trial.first))
             row = {**dataclasses.asdict(trial), "answer": answer, "correct": right, "felt": felt}
             put_down([row[name] for name in COLUMNS])
@@ -232,7 +240,11 @@ def touching(volume: _Path, level: Union[float, str, None], device: str, name: s
     def opened(value):
         setup = palpate.Setup(isovalue=level, device=device)
         put(setup.render, name, value)
-        return palpate.Run(loaded, setup), setup.render.stiffness or 0
+        run = palpate.Run(loaded, setup)
+        most = getattr(run.device.limits, {"force.limit": "maximum_force", "force.torque_limit": "maximum_torque"}.get(name, ""), math.inf)
+        if value > most:
+            raise ValueError(f"{name} = {value:g}: the device renders at most {most:g}")
+        return run, setup.render.stiffness or 0
 
     def touched_for(run):
         """The newest snapshot, after so many seconds of the session. A busy machine may do its first tick late."""
@@ -310,27 +322,27 @@ def _ask(chosen: Any) -> None:
     volume, at, level = chosen.volume.rpartition("@")
     if "/" in level or re.fullmatch(r"[^/]*://[^/]*", volume):  # of a folder's name, or behind the password of an address
         volume, at, level = "", "", chosen.volume
-    idle, why = (("difference", "--differences has them all") if chosen.differences else
-                 ("repeats", "it is for --differences"))
-    if idle in PARSER.given:
-        tell(f"warning: --{idle} does nothing: {why}")
+    if chosen.differences:
+        PARSER.warn_of_no_effect(["difference"], "--differences has them all")
+    else:
+        PARSER.warn_of_no_effect(["repeats"], "it is for --differences")
     plan = Plan(chosen.standard, chosen.difference, tuple(chosen.differences), chosen.repeats, chosen.seed, chosen.most)
     largest = plan.standard * (1 + (max(plan.differences) if plan.differences else plan.most))
     rows = session(chosen.file, plan, touching(volume if at else level, level if at else None, chosen.device, chosen.setting,
                                                chosen.seconds, Path(chosen.file).with_suffix(".touches"), largest),
-                   f"{chosen.setting} of {without_secrets(chosen.volume)} for {chosen.seconds:g} s")
+                   f"{chosen.setting} of {without_secrets(chosen.volume)} by {chosen.device} for {chosen.seconds:g} s")
     remark(f"The session is complete: {len(rows)} trials. To fit a threshold: palpate study --analyse {chosen.file}")
 
 
 def _analyse(files: Sequence[str]) -> None:
-    lines = ["file,trials,threshold,low,high,slope"]
+    lines = [_line(("file", "trials", "threshold", "low", "high", "slope"))]
     for file in files:
         rows = read(file)
         try:
-            lines.append(",".join((file, str(len(rows)), *(f"{value:.4g}" for value in fit(rows)))))
+            lines.append(_line((file, len(rows), *(f"{value:.4g}" for value in fit(rows)))))
         except ValueError as error:
             raise InputError(f"{file}: {error}") from error
-    say("\n".join(lines))
+    say("".join(lines), end="")
 
 
 def main(words: Sequence[str]) -> int:

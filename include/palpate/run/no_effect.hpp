@@ -24,6 +24,8 @@ std::string no_effect_text(const std::vector<std::string>& given, const std::str
 std::vector<NoEffect> without_effect(const Source& source);
 /// Options that this volume does not use. That is known only after it was loaded.
 std::vector<NoEffect> without_effect(const LoadedVolume& loaded);
+/// Arguments and commands that these samples do not use.
+std::vector<NoEffect> without_effect(const Samples& samples);
 /// Options that these settings do not use.
 std::vector<NoEffect> without_effect(const RenderSetup& setup);
 /// The same for a replay, in which nobody changes the tool and the hand never pauses.

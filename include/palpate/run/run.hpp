@@ -102,7 +102,8 @@ class Run {
     /// Throws std::invalid_argument, with the reason, for a command that cannot be executed, and
     /// for DeviceLimits that lower nothing; QueueFull if commands come too fast. While there are
     /// layers with surfaces, an isovalue has no effect. The last one applies when they are removed.
-    /// WrongState after stop().
+    /// Speed and Moment are for the player of data(), which throws if there is none. WrongState
+    /// after stop().
     void send(const Command& asked);
     /// Commands that were sent and not carried out yet.
     std::int64_t waiting() const { return started_servo().waiting(); }

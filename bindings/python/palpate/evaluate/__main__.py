@@ -20,7 +20,8 @@ MOST_SEEDS = 1000
 PACKAGES = ("numpy", "scipy", "matplotlib")  # Debian: python3-NAME
 USERS = {"range": ("penetration",), "seeds": ("fall-through", "layers", "tools", "recorded"), "method": ("walk-through",),
          "seed": ("fall-through", "performance", "scaling", "layers", "tools", "streaming", "recorded",
-                  "needle")}  # of options that few use
+                  "needle"),
+         "data": ("drift", "performance", "scaling", "penetration", "layers", "notice", "recorded")}  # of options that few use
 CLAIMS_BROKEN, BAD_OUTPUT = 1, 5  # exit status, docs/command_line.md
 
 
@@ -60,7 +61,8 @@ PARSER.add_argument("-q", "--quiet", action="store_true", help="Print nothing")
 
 def arguments(words):
     chosen = PARSER.arguments(words)
-    chosen.given = PARSER.given | ({"range"} if chosen.range else set())
+    if chosen.range:
+        PARSER.given.add("range")
     if chosen.data is not None and not Path(chosen.data).is_dir():
         PARSER.error(f"--data {chosen.data}: there is no such folder")
     chosen.data = chosen.data or os.environ.get("PALPATE_DATA") or None
@@ -76,8 +78,10 @@ def names_of(chosen):
 
 def warn_of_no_effect(chosen, names):
     for option, users in USERS.items():
-        if option in chosen.given and not set(users) & set(names):
-            tell(f"warning: --{option} does nothing: it is for {', '.join(users)}")
+        if not set(users) & set(names):
+            PARSER.warn_of_no_effect([option], f"it is for {', '.join(users)}")
+    if chosen.quick and "recorded" not in names and set(USERS["data"]) & set(names):
+        PARSER.warn_of_no_effect(["data"], "--quick uses no real volume")
 
 
 @contextlib.contextmanager
@@ -144,6 +148,7 @@ def shown(made):
 
 def evaluate(chosen, words):
     from palpate.evaluate import report
+    from palpate.evaluate.experiment import DoesNotApply
     names = names_of(chosen)
     options_of(chosen, chosen.experiment)  # refuses volumes before any work
     warn_of_no_effect(chosen, names)
@@ -157,7 +162,7 @@ def evaluate(chosen, words):
         for name in names:
             try:
                 reports.append(run(name, chosen, part, words))
-            except ValueError as error:
+            except DoesNotApply as error:
                 if len(names) == 1:
                     raise
                 tell(f"note: {name} is left out: {error}")

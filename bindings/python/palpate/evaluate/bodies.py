@@ -6,6 +6,7 @@ import dataclasses
 import numpy
 import palpate
 
+from .experiment import DoesNotApply
 from .hands import Ring
 from .subjects import cube, synthetic
 
@@ -107,7 +108,7 @@ def of_a_user(subject):
     """Around the z axis, from outside. Raises ValueError where a hand cannot go around it."""
     geometry = subject.field.geometry
     if subject.sign * (subject.field.background - subject.isovalue) > 0:
-        raise ValueError(f"{subject.name}: all around the data is solid at this level, so a hand cannot come to it; choose another level")
+        raise DoesNotApply(f"{subject.name}: all around the data is solid at this level, so a hand cannot come to it; choose another level")
     depth = float(DEPTH * (geometry.size * geometry.spacing).min())
     ring = Ring(subject, depth)
     start = ring.centre + subject.diagonal * unit(ring.at([0.0])[0] - ring.centre)

@@ -16,6 +16,10 @@ import numpy
 GRANTED = 1e-9  # of the data's range: what G1 and G2 allow (docs/proxy.md)
 
 
+class DoesNotApply(ValueError):
+    """An experiment that cannot be made on the volumes that were chosen. `all` leaves it out."""
+
+
 @dataclasses.dataclass
 class Options:
     """What the user chose."""
@@ -33,7 +37,7 @@ class Options:
 
     def refuse_volumes(self, reason):
         if self.subjects:
-            raise ValueError(f"{reason} of its own: leave out --volume")
+            raise DoesNotApply(f"{reason} of its own: leave out --volume")
 
     def each(self, cases, begin=0, end=1):
         """The cases, one after the other, with reports of progress between two parts of the whole."""

@@ -5,6 +5,8 @@ import dataclasses
 import numpy
 import palpate
 
+from .experiment import DoesNotApply
+
 
 @dataclasses.dataclass
 class Way:
@@ -49,7 +51,7 @@ def way_from_a_side(subject):
             way = way_in(subject, centre, side * numpy.asarray(geometry.direction)[:, axis])
             if way is not None and (centre != way.origin).any():
                 return way, float(numpy.linalg.norm(centre - way.origin))
-    raise ValueError(f"{subject.name}: no line from a side of the volume to its middle meets the surface; choose another level")
+    raise DoesNotApply(f"{subject.name}: no line from a side of the volume to its middle meets the surface; choose another level")
 
 
 class Ring:
@@ -71,7 +73,7 @@ class Ring:
         radius = numpy.linalg.norm(points - self.centre, axis=1)
         met = numpy.flatnonzero(~numpy.isnan(radius))
         if 2 * len(met) < self.RAYS:
-            raise ValueError(f"{subject.name}: rays to its centre hardly meet the surface, so a hand cannot go round it; choose another "
+            raise DoesNotApply(f"{subject.name}: rays to its centre hardly meet the surface, so a hand cannot go round it; choose another "
                              "level or volume")
         # The nearest ray before it that met the surface, around the circle.
         before = met[numpy.searchsorted(met, numpy.arange(self.RAYS), side="right") - 1]

@@ -7,6 +7,8 @@ import numpy
 import scipy.ndimage
 import scipy.sparse.csgraph
 
+from .experiment import DoesNotApply
+
 
 def corners_of(grid, axes=(0, 1, 2)):
     """Each of the eight corners of every cell, or of the four of every face along two axes."""
@@ -30,7 +32,7 @@ class Outside:
         self._subject = subject
         field = subject.field
         if subject.sign * (field.background - subject.isovalue) > 0:
-            raise ValueError("all around the data is solid at this level, so nothing can come from outside: "
+            raise DoesNotApply("all around the data is solid at this level, so nothing can come from outside: "
                              "choose another level")
         samples = field.volume.array.astype(float).transpose(2, 1, 0)  # [x, y, z]
         self._excess = subject.sign * (numpy.pad(samples, 1, constant_values=field.background)

@@ -33,9 +33,9 @@ Recording = collections.namedtuple("Recording", "name time position force")  # o
 
 def read(path):
     """A .traj file: a sample per line, its numbers apart by blanks or commas: t [s], x, y, z [mm], fx, fy, fz [N], an order that is assumed
-    (docs/evaluation.md). A comment (#, %) that lists names of columns gives another one. Raises ValueError."""
+    (docs/evaluation.md). A comment (#, %) that lists names of columns gives another one. Raises InputError."""
     names, rows = list(COLUMNS), []
-    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+    for number, line in enumerate(path.read_text(encoding="utf-8", errors="replace").splitlines(), 1):
         words = line.replace(",", " ").split()
         if words and words[0][0] in "#%":
             listed = [word.lower() for word in " ".join(words).strip("#% ").split()]
@@ -44,10 +44,10 @@ def read(path):
             try:
                 rows.append([float(words[names.index(name)]) for name in COLUMNS])
             except (ValueError, IndexError) as error:
-                raise ValueError(f"{path.name}, line {number}: {len(COLUMNS)} numbers are needed: {' '.join(COLUMNS)}") from error
+                raise palpate.InputError(f"{path}, line {number}: {len(COLUMNS)} numbers are needed: {' '.join(COLUMNS)}") from error
     table = numpy.array(rows).reshape(-1, len(COLUMNS))
     if len(table) < 2 or not numpy.isfinite(table).all() or (numpy.diff(table[:, 0]) <= 0).any():
-        raise ValueError(f"{path.name}: two samples or more are needed, with numbers that are finite and times that rise")
+        raise palpate.InputError(f"{path}: two samples or more are needed, with numbers that are finite and times that rise")
     return Recording(path.parent.name if path.name == "probe.traj" else path.stem, table[:, 0], table[:, 1:4], table[:, 4:])
 
 

@@ -70,7 +70,7 @@ def write_files(report, folder):
     write_csv(report.result.table, folder / f"{report.name}.csv")
     for figure, (file, _) in zip(report.result.figures, files_of(report)):
         figures.save(figure.drawn, (folder / file).with_suffix(""))
-    (folder / f"{report.name}.md").write_text(markdown(report), encoding="utf-8")
+    (folder / f"{report.name}.md").write_text(markdown(report), "utf-8", "surrogateescape")
 
 
 def html_table(table):
@@ -120,7 +120,7 @@ def page_of(reports, folder, whole=True):
 
 def write_pages(reports, folder, into):
     """report.html, and report.pdf if WeasyPrint is there. Returns whether it is."""
-    (into / "report.html").write_text(page_of(reports, folder), encoding="utf-8")
+    (into / "report.html").write_text(page_of(reports, folder), "utf-8", "surrogateescape")
     if not importlib.util.find_spec("weasyprint"):
         return False
     import weasyprint

@@ -8,7 +8,7 @@ import numpy
 import palpate
 
 from . import figures
-from .experiment import GRANTED, Figure, Page, Result, Table
+from .experiment import GRANTED, DoesNotApply, Figure, Page, Result, Table
 from .subjects import CONTESTANTS, GUARDED, linear
 
 PAGE = Page(__name__)
@@ -45,7 +45,7 @@ def contact_in(subject, z):
     points, normals = palpate.cast_rays(subject.field, subject.isovalue, *ends)
     met = numpy.flatnonzero(points[:, 0] > 0)  # not where the border of the data closes a body
     if not len(met):
-        raise ValueError(f"{subject.name}: no row of its middle slice meets the surface within the data; choose another level or volume")
+        raise DoesNotApply(f"{subject.name}: no row of its middle slice meets the surface within the data; choose another level or volume")
     return points[met[0]], normals[met[0]]
 
 

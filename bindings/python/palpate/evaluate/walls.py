@@ -3,6 +3,7 @@
 import numpy
 import palpate
 
+from .experiment import DoesNotApply
 from .outside import corners_of
 from .subjects import cube
 
@@ -59,7 +60,7 @@ def lines_through(subject, outside, anywhere, count, random):
     kept, tried = [], 0
     while sum(len(part[0]) for part in kept) < count:
         if tried > 1000 + 100 * count:
-            raise ValueError(f"{subject.name}: hardly a straight line through it meets anything solid; choose another level or volume")
+            raise DoesNotApply(f"{subject.name}: hardly a straight line through it meets anything solid; choose another level or volume")
         along = random.standard_normal((2 * count + 100, 3))
         places = random.random(along.shape) * (numpy.asarray(subject.field.geometry.size) - 1)
         kept.append(usable(subject, outside, anywhere, places, along / numpy.linalg.norm(along, axis=1, keepdims=True)))

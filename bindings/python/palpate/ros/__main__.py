@@ -43,6 +43,8 @@ def arguments_from(given):
     options = PARSER.arguments(rest)
     if options.arm and options.device:
         PARSER.error("--arm and --device exclude each other")
+    if not options.arm:
+        PARSER.warn_of_no_effect(["axes", "pose-rate", "model"], "there is no --arm")
     return options, [text for text in given if ":=" in text]
 
 
