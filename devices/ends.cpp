@@ -21,7 +21,7 @@ constexpr std::array crashes{SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGTRAP, 
 constexpr std::array harmless{SIGKILL, SIGSTOP, SIGCHLD, SIGCONT, SIGURG, SIGWINCH};
 
 /// What each signal that is handled here did before.
-std::array<struct sigaction, 128> before{};
+std::array<struct sigaction, 128> actions_before{};
 
 /// On a stack of its own, for the crash may be that of a stack that has run out (of the thread that
 /// made the LastResort; other threads have their guard page and no second stack).
@@ -77,7 +77,7 @@ void handle_ends() {
         if (std::ranges::count(harmless, number) > 0 || has_our_handler(number)) continue;
         if (std::ranges::count(crashes, number) > 0 || has_default_action(number)) {
             // Fails for those that the C library keeps.
-            ::sigaction(number, &action, &before[static_cast<std::size_t>(number)]);
+            ::sigaction(number, &action, &actions_before[static_cast<std::size_t>(number)]);
         }
     }
 }
@@ -85,7 +85,7 @@ void handle_ends() {
 void forget_ends() {
     for (int number = 1; number <= SIGRTMAX; ++number) {
         if (!has_our_handler(number)) continue;
-        ::sigaction(number, &before[static_cast<std::size_t>(number)], nullptr);
+        ::sigaction(number, &actions_before[static_cast<std::size_t>(number)], nullptr);
     }
 }
 

@@ -35,7 +35,7 @@ extern "C" int getaddrinfo(const char* host, const char* service, const addrinfo
 namespace palpate::bridge {
 namespace {
 
-constexpr std::chrono::seconds second{1};
+constexpr std::chrono::seconds one_second{1};
 
 Settings at_host(const std::string& host, int port, bool client = false) {
     Settings settings;
@@ -64,7 +64,7 @@ TEST(BridgeAddresses, a_client_tries_one_after_the_other_and_notes_the_first_fai
         client.step();
         return client.tells("no server answers at both.test");
     })) << client.told;
-    for (int i = 0; i < 3; ++i) client.step(second);
+    for (int i = 0; i < 3; ++i) client.step(one_second);
     EXPECT_TRUE(support::comes_true([&] {
         client.step();
         server.step();

@@ -55,21 +55,6 @@ TEST(ChangingSession, plays_a_sequence_by_the_times_of_the_ticks) {
     }
 }
 
-TEST(ChangingSession, the_seam_of_a_loop_is_no_jump) {
-    const Volume same = shifted_ramp(0);
-    const auto loop = std::make_shared<const Samples>(
-        std::vector<Frame>{{0, same}, {0.01, same}, {0.02, same}}, 0.03);
-    ChangingSession still(loop), playing(loop);
-    apply(playing.session, command::Speed{0.05});  // 200 ticks per frame
-    for (int i = 0; i < 2000; ++i) {
-        // Every force rises by more than a jump would let it.
-        const double depth = 28 + (i % 50 < 25 ? 0 : 0.16 * (i % 25));
-        still.reading = playing.reading = ready_at({4.2, 3.9, depth});
-        const SessionTick a = still.next(), b = playing.next();
-        ASSERT_NEAR((a.tick.force - b.tick.force).norm(), 0, 1e-9) << "tick " << i;
-    }
-}
-
 TEST(ChangingSession, a_sequence_stops_at_its_ends_and_goes_on_backwards) {
     ChangingSession live(swinging());
     live.next();

@@ -139,7 +139,8 @@ TEST(Restart, a_recording_with_a_limit_that_was_lowered_replays) {
     live.send(DeviceTransform{});
     const Vec3 centre = physical_from_index(live.field().geometry(), Vec3::Constant(15.5));
     for (int i = 0; i < 600; ++i) {
-        hand = centre + Vec3(16 - 0.02 * i, 0, 0);
+        // Deeper and deeper, at last faster than the force may rise after a change.
+        hand = centre + Vec3(i < 400 ? 16 - 0.02 * i : 8 - 0.1 * (i % 50), 0, 0);
         if (i > 300 && i % 20 == 0) {
             DeviceLimits limits = live.device().limits;
             limits.warming_time = 60 - 0.05 * i;
