@@ -77,8 +77,10 @@ double Opened::dark() const {
 
 double Opened::bright() const {
     if (const auto& window = loaded.values.window) return window->centre + 0.5 * window->width;
-    const double level = quantile(histogram, 1 - outliers);
-    return level > dark() ? level : loaded.volume.maximum();
+    // The last bin of few whole numbers ends beyond them.
+    const double most = loaded.volume.maximum();
+    const double level = std::min(quantile(histogram, 1 - outliers), most);
+    return level > dark() ? level : most;
 }
 
 bool is_outdated(const Opened& opened) {

@@ -2364,7 +2364,7 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
     </message>
     <message>
         <source>Or&amp;ientation and spacing…</source>
-        <translation>&amp;Lage und Abstand…</translation>
+        <translation>&amp;Lage und Abstand …</translation>
     </message>
     <message>
         <source>From %1</source>

@@ -2,9 +2,11 @@
 #include "apps/viewer/window/panel.hpp"
 
 #include <QEvent>
+#include <QProxyStyle>
 #include <QRegularExpression>
 #include <QScrollArea>
 #include <QScrollBar>
+#include <QTabBar>
 #include <QTabWidget>
 #include <QVBoxLayout>
 
@@ -48,6 +50,16 @@ class Page : public QScrollArea {
     void fit() {
         setMinimumWidth(widget()->minimumSizeHint().width() +
                         verticalScrollBar()->sizeHint().width());
+    }
+};
+
+/// Four pages stand side by side in a quarter of a small window.
+class NarrowTabs : public QProxyStyle {
+  public:
+    int pixelMetric(PixelMetric metric, const QStyleOption* option,
+                    const QWidget* widget) const override {
+        const int usual = QProxyStyle::pixelMetric(metric, option, widget);
+        return metric == PM_TabBarTabHSpace ? usual / 2 : usual;
     }
 };
 
@@ -108,6 +120,9 @@ void Panel::build() {
     column->addWidget(part(tr("Isovalue"), "isovalue_part", isovalue_));
     column->addWidget(tabs_, 1);
     tabs_->setDocumentMode(true);
+    auto* narrow = new NarrowTabs;
+    narrow->setParent(tabs_);
+    tabs_->tabBar()->setStyle(narrow);
     const auto add = [this](const QString& title, std::initializer_list<QWidget*> sections) {
         auto* page = new Page(sections);
         tabs_->addTab(page, title);

@@ -13,6 +13,7 @@
 #include <QScrollArea>
 #include <QSet>
 #include <QStatusBar>
+#include <QTabBar>
 #include <QTabWidget>
 #include <QTableWidget>
 #include <QToolButton>
@@ -193,6 +194,15 @@ TEST_F(German, no_label_of_the_panel_is_cut_off_at_the_usual_width) {
         EXPECT_TRUE(cut_off().isEmpty()) << cut_off().join(" | ").toStdString();
         save(QString("page-%1").arg(i).toStdString());
     }
+}
+
+TEST_F(German, all_pages_of_the_panel_can_be_chosen_in_a_small_window) {
+    open_german();
+    window_->resize(62 * window_->fontMetrics().height(), 700);
+    feel("synthetic:sphere:24x24x24");
+    const QTabBar& tabs = *part<QTabWidget>("tabs").tabBar();
+    wait_until_settled();
+    EXPECT_LE(tabs.tabRect(tabs.count() - 1).right(), tabs.width()) << window_->width();
 }
 
 TEST_F(German, no_page_of_the_panel_is_cut_off_whatever_is_unfolded) {
