@@ -58,7 +58,8 @@ ChunkedArray array_from(const Json& array, int version, const std::string& folde
     return version == 3 ? zarr3_array(array, folder) : zarr2_array(array, folder);
 }
 
-/// ", such as ..." for the plates and the lists of labels of OME-Zarr, which have images below them.
+/// ", such as ..." for the plates and the lists of labels of OME-Zarr, which have images below
+/// them.
 std::string folder_below(const Json& given) {
     const Json& own = member(given, "ome");
     const Json& attributes = own.is_null() ? given : own;
