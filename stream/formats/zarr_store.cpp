@@ -58,6 +58,20 @@ ChunkedArray array_from(const Json& array, int version, const std::string& folde
     return version == 3 ? zarr3_array(array, folder) : zarr2_array(array, folder);
 }
 
+/// ", such as ..." for the plates and the lists of labels of OME-Zarr, which have images below
+/// them.
+std::string folder_below(const Json& given) {
+    const Json& own = member(given, "ome");
+    const Json& attributes = own.is_null() ? given : own;
+    const Json &wells = member(member(attributes, "plate"), "wells"),
+               &labels = member(attributes, "labels");
+    const Json* name = nullptr;
+    if (wells.is_array() && !wells.empty()) name = &member(wells[0], "path");
+    if (labels.is_array() && !labels.empty()) name = &labels[0];
+    if (!name || !name->is_string()) return "";
+    return ", such as " + io::one_line(name->get<std::string>().substr(0, 80));
+}
+
 class Opening {
   public:
     Opening(const Objects& objects, std::string folder, const StoreOptions& options)
@@ -74,12 +88,14 @@ class Opening {
         if (root.is_array) return of_array(root);
         auto image = ome_image(root.attributes);
         if (!image) {
+            const std::string below = folder_below(root.attributes);
             root = first_series();
             image = ome_image(root.attributes);
-        }
-        if (!image) {
-            throw BadMetadata(
-                "has neither an image nor an array of its own; give one in a folder below it");
+            if (!image) {
+                throw BadMetadata(
+                    "has neither an image nor an array of its own; give one in a folder below it" +
+                    below);
+            }
         }
         if (root.version == 3) check_members(root.metadata);
         take_levels(*image, root.version);

@@ -227,6 +227,21 @@ def test_a_second_image_is_noted(tmp_path):
     assert any("2 images" in note for note in notes)
 
 
+@pytest.mark.parametrize("told, folder", (
+    ({"plate": {"wells": [{"path": "B/03", "rowIndex": 1, "columnIndex": 2}]}}, "B/03"), ({"labels": ["cells", "nuclei"]}, "cells"),
+    ({"plate": {"wells": []}}, "")))
+@pytest.mark.parametrize("version", (2, 3))
+def test_plates_and_lists_of_labels_name_a_folder_with_an_image(tmp_path, told, folder, version):
+    if version == 2:
+        (tmp_path / ".zgroup").write_text('{"zarr_format": 2}')
+        (tmp_path / ".zattrs").write_text(json.dumps(told))
+    else:
+        (tmp_path / "zarr.json").write_text(json.dumps({"zarr_format": 3, "node_type": "group", "attributes": {"ome": told}}))
+    with pytest.raises(palpate.InputError) as caught:
+        palpate.open_store(tmp_path)
+    assert str(caught.value).endswith("give one in a folder below it" + (f", such as {folder}" if folder else ""))
+
+
 # Fill values -----------------------------------------------------------------------------------------
 
 
