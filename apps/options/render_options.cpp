@@ -35,6 +35,11 @@ std::array<double, 2> two_numbers(const std::string& option, const std::string& 
 
 }  // namespace
 
+/// "--stiffness" of "-k,--stiffness".
+static std::string long_name(const std::string& option) {
+    return option.empty() ? option : option.substr(option.find("--"));
+}
+
 Friction friction_from(const std::string& what, const std::string& text) {
     const auto [still, moving] = two_numbers(what, text, true);
     return {still, moving};
@@ -199,6 +204,32 @@ run::RenderSetup RenderOptions::setup() const {
     }
     warn_of_no_effect(*command_, run::without_effect_in_replay(setup));
     return setup;
+}
+
+std::vector<std::string> RenderOptions::named_options() const {
+    std::vector<std::string> names{"--friction", "--scale"};
+    for_each_setting<ForceSettings>([&](const auto& one) {
+        if (one.option[0] != '\0') names.push_back(long_name(one.option));
+    });
+    return names;
+}
+
+std::function<void(RendererSettings&)> RenderOptions::named() const {
+    std::vector<std::function<void(RendererSettings&)>> changes;
+    for_each_setting<ForceSettings>([&](const auto& one) {
+        if (!is_given(*command_, long_name(one.option))) return;
+        changes.emplace_back([one, value = given.force.*one.member](RendererSettings& settings) {
+            settings.force.*one.member = value;
+        });
+    });
+    return [changes, limit = given.limit, stiffness = given.stiffness, friction = given.friction,
+            scale = given.scale](RendererSettings& settings) {
+        for (const auto& change : changes) change(settings);
+        if (limit) settings.force.limit = *limit;
+        if (stiffness) settings.force.stiffness = *stiffness;
+        if (friction) settings.proxy.friction = *friction;
+        if (scale) settings.transform.scale = *scale;
+    };
 }
 
 run::RenderSetup RenderOptions::setup_in(const run::LoadedVolume& volume) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,7 +29,12 @@ struct RenderOptions {
     /// for an option that makes no sense without another, io::InputError for a volume that cannot
     /// be read. Warns on standard error of options that do nothing.
     run::RenderSetup setup() const;
-    /// The same for rendering offline: labels lie beside this volume. A run sees to that itself.
+    /// Options whose values named() puts into the settings of a session.
+    std::vector<std::string> named_options() const;
+    /// Puts the values that the command line names into settings from elsewhere.
+    std::function<void(RendererSettings&)> named() const;
+    /// The same as setup() for rendering offline: labels lie beside this volume. A run sees to that
+    /// itself.
     run::RenderSetup setup_in(const run::LoadedVolume& volume) const;
 
   private:

@@ -121,6 +121,17 @@ void RunOptions::add_data_options(CLI::App& command) {
         ->default_str(std::to_string(given.playback.loader.memory_bytes >> 20));
 }
 
+std::vector<std::string> RunOptions::beside_session() const {
+    std::vector<std::string> names = render.named_options();
+    for (const char* name : {"--record", "--rate", "--step-budget", "--normal-priority",
+                             "--playback", "--once", "--sequence-memory"}) {
+        names.emplace_back(name);
+    }
+    for_each_setting<run::Buttons>([&](const auto& one) { names.emplace_back(one.option); });
+    for_each_setting<SessionSettings>([&](const auto& one) { names.emplace_back(one.option); });
+    return names;
+}
+
 std::vector<run::Setup> RunOptions::setups() const {
     run::Setup setup = given;
     setup.render = render.setup();

@@ -31,6 +31,9 @@ struct RunOptions {
     /// Once the command line has been read: how each hand feels. Throws std::invalid_argument.
     std::vector<run::Setup> setups() const;
 
+    /// Options that have their effect also with the settings of a session file.
+    std::vector<std::string> beside_session() const;
+
   private:
     void add_device_options(CLI::App& command);
     void add_script_options(CLI::App& command);

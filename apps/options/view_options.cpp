@@ -3,7 +3,9 @@
 #include "apps/options/no_effect.hpp"
 #include "apps/options/values.hpp"
 
+#include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <stdexcept>
 #include <utility>
 
@@ -48,18 +50,18 @@ void ViewOptions::settle() {
 void ViewOptions::warn() const {
     if (screenshot.empty()) warn_of_no_effect(*command_, {"--after"}, "there is no --screenshot");
     if (session.empty() && play.empty()) return;
-    const std::string reason = "the " + std::string(play.empty() ? "session" : "recording") +
-                               " gives the data and the settings";
-    if (has_volume()) warn_of_no_effect(*command_, {"VOLUME"}, reason);
-    warn_of_no_effect(*command_,
-                      {"--dims",      "--type",       "--spacing",        "--orientation",
-                       "--skip",      "--byte-order", "--series",         "--time-step",
-                       "--smooth",    "--dequantize", "--frame-interval", "--prefilter",
-                       "--level",     "--channel",    "--memory",         "--coarse-first",
-                       "--all-times", "--cache",      "--cache-size",     "--forbidden-is-missing",
-                       "--isovalue",  "--solid",      "--field",          "--background",
-                       "--method",    "--layers",     "--labels"},
-                      reason);
+    std::vector<std::string> used{"--session", "--play",       "--window", "--after",
+                                  "--device",  "--screenshot", "--quiet"};
+    if (!session.empty()) std::ranges::move(run.beside_session(), std::back_inserter(used));
+    if (!has_volume()) used.emplace_back("VOLUME");
+    std::vector<std::string> useless;
+    for (const CLI::Option* option : command_->get_options()) {
+        const auto names_it = [&](const std::string& name) { return option->check_name(name); };
+        if (std::ranges::none_of(used, names_it)) useless.push_back(option->get_name());
+    }
+    warn_of_no_effect(*command_, useless,
+                      "the " + std::string(play.empty() ? "session" : "recording") +
+                          " gives the data and the settings");
 }
 
 std::optional<std::array<int, 2>> ViewOptions::window_size() const {

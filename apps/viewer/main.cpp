@@ -57,6 +57,7 @@ int show(QApplication& application, const app::ViewOptions& options) {
     for (const auto button : options.run.named_buttons) {
         request.buttons.emplace_back(button, request.setup.buttons.*button);
     }
+    request.named_settings = options.run.render.named();
     viewer::MainWindow window(request);
     if (const auto size = options.window_size()) window.resize((*size)[0], (*size)[1]);
     if (!options.size.empty() || !options.screenshot.empty()) window.forget_layout();

@@ -35,6 +35,10 @@ struct RunRequest {
     /// The buttons that the command line names: used instead of those in a session file.
     std::vector<std::pair<run::ButtonSetup run::Buttons::*, run::ButtonSetup>> buttons = {};
 
+    /// Puts the values that the command line names into the settings of a session file; may be
+    /// empty.
+    std::function<void(RendererSettings&)> named_settings = {};
+
     std::vector<run::Setup> setups() const;
     void use_devices_of(const RunRequest& other);
 };

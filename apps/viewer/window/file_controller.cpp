@@ -327,11 +327,12 @@ void FileController::feel_again(const run::Source& source) {
     });
 }
 
-/// The devices are those in use, whatever the command line named.
+/// Devices and settings are those in use, whatever the command line named.
 RunRequest FileController::request_for_same() {
     RunRequest request = content_.take_request();
     request.device.reset();
     request.buttons.clear();
+    request.named_settings = {};
     return request;
 }
 

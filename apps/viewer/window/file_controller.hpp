@@ -99,8 +99,8 @@ class FileController : public Controller {
     void feel(std::shared_ptr<Opened> opened, const RunRequest& request, std::function<void()> then,
               std::function<void(const std::exception_ptr&)> otherwise = {});
     void tell_felt(const Opened& opened, const std::vector<run::Setup>& hands);
-    void feel_session(std::shared_ptr<Opened> opened, const SessionFile& session,
-                      RunRequest request, std::function<void()> then = {}, bool in_place = true);
+    void feel_session(std::shared_ptr<Opened> opened, SessionFile session, RunRequest request,
+                      std::function<void()> then = {}, bool in_place = true);
     void restore_hands(const SessionFile& session, bool in_place);
     void restore(const RendererSettings& settings, bool in_place);
     RunRequest request_for_same();

@@ -1,4 +1,5 @@
 // Sessions: opens and saves their files, and feels a volume again as a session says.
+#include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <functional>
@@ -132,9 +133,9 @@ void FileController::open_json(const QString& path, const std::optional<UnsavedW
         });
 }
 
-/// Devices and buttons are those of the command line, else the session's; where they cannot be had,
-/// those chosen in this window.
-void FileController::feel_session(std::shared_ptr<Opened> opened, const SessionFile& session,
+/// Devices, buttons, and the settings that the command line names are its own, the others those of
+/// the session. Where devices cannot be had, those chosen in this window are used.
+void FileController::feel_session(std::shared_ptr<Opened> opened, SessionFile session,
                                   RunRequest request, std::function<void()> then, bool in_place) {
     run::Setup& setup = request.setup;
     setup.field = {session.solid, session.background, session.isovalue, session.interpolation};
@@ -145,6 +146,11 @@ void FileController::feel_session(std::shared_ptr<Opened> opened, const SessionF
     setup.device = request.device.value_or(session.device);
     setup.buttons = session.buttons;
     for (const auto& [member, wanted] : request.buttons) setup.buttons.*member = wanted;
+    const auto use_named = [&](SessionHand& hand) {
+        if (hand.settings && request.named_settings) request.named_settings(*hand.settings);
+    };
+    use_named(session);
+    std::ranges::for_each(session.others, use_named);
     setup.render.method = session.method;
     setup.render.layers.reset();  // the session's are in its settings
     // The usual one is smaller for a fast device.

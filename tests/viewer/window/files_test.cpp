@@ -12,7 +12,6 @@
 #include <cmath>
 #include <fstream>
 
-#include "apps/options/view_options.hpp"
 #include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
 #include "apps/viewer/window/screenshot.hpp"
@@ -437,43 +436,6 @@ TEST_F(Files, a_slice_moves_the_hand_with_ctrl_only) {
     QTest::lastMouseTimestamp += 1000;  // it is no third click
     QTest::mouseClick(&axial, Qt::LeftButton, Qt::ControlModifier, at);
     wait_until([&] { return (now().session.tick.proxy.hip - wanted).norm() < 0.1; });
-}
-
-TEST(ViewOptions, a_session_or_a_recording_is_opened_by_its_name) {
-    for (const auto& [name, session, play] :
-         {std::array{"a/b.json", "a/b.json", ""}, {"b.csv", "", "b.csv"}, {"c.nrrd", "", ""}}) {
-        app::ViewOptions options;
-        options.run.source.volume() = name;
-        options.settle();
-        EXPECT_EQ(options.session, session);
-        EXPECT_EQ(options.play, play);
-        EXPECT_EQ(options.has_volume(), std::string(name) == "c.nrrd");
-    }
-}
-
-TEST(ViewOptions, without_effect_are_told_apart_from_the_settling) {
-    CLI::App command;
-    app::ViewOptions options;
-    options.add_to(command);
-    command.parse("synthetic:sphere:8x8x8 --after 2");
-    testing::internal::CaptureStderr();
-    options.settle();
-    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-    testing::internal::CaptureStderr();
-    options.warn();
-    EXPECT_EQ(testing::internal::GetCapturedStderr(),
-              "palpate: warning: --after does nothing: there is no --screenshot\n");
-}
-
-TEST(WindowSize, is_read_or_refused) {
-    app::ViewOptions options;
-    EXPECT_FALSE(options.window_size());
-    options.size = "1280x800";
-    EXPECT_EQ(options.window_size(), (std::array{1280, 800}));
-    for (const char* wrong : {"1280", "1280x", "x800", "1280x800x3", "10x10", "big"}) {
-        options.size = wrong;
-        EXPECT_THROW((void)options.window_size(), std::invalid_argument) << wrong;
-    }
 }
 
 }  // namespace
