@@ -15,7 +15,7 @@ namespace palpate::run {
 namespace {
 
 /// [s] How long the first frame of a live source is waited for.
-constexpr double longest_wait = 5;
+constexpr double longest_wait = 30;
 
 /// The synthetic volume that is a sequence, with or without a size.
 bool is_beating(const std::string& scene) {

@@ -148,12 +148,14 @@ TEST(PacedTouchWithTwo, goes_on_with_one_when_the_other_is_unplugged) {
     service.reset();
     EXPECT_TRUE(comes_true([&] { return last(1).device.status == DeviceStatus::lost; }));
     const double then = last(2).tick.time;
-    EXPECT_TRUE(comes_true([&] { return last(2).tick.time > then + 0.3; }));
+    EXPECT_TRUE(comes_true([&] {
+        const SessionTick now = last(2);  // on a busy machine some are stale
+        return now.tick.time > then + 0.3 && now.device.status == DeviceStatus::ready;
+    }));
     const Outcome done = program.finish(SIGINT);
     EXPECT_EQ(done.status, 130) << done.err;
     EXPECT_TRUE(contains(done.err, "hand 1, device haply: lost")) << done.err;
     EXPECT_EQ(last(1).tick.force, Vec3(0, 0, 0));
-    EXPECT_EQ(last(2).device.status, DeviceStatus::ready);
     EXPECT_EQ(palpate(folder, "replay both.csv --validate").status, 0);
 }
 

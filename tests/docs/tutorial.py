@@ -36,14 +36,11 @@ def blocks_of(page):
             fenced, language, lines, begun = True, line[3:].strip(), [], number
 
 
-def environment(prefix):
+def environment(prefix, port):
     extra = {"PATH": prefix / "bin", "PYTHONPATH": prefix / "lib/python3/dist-packages",
              "PKG_CONFIG_PATH": prefix / "lib/pkgconfig", "LD_LIBRARY_PATH": prefix / "lib",
              "CMAKE_PREFIX_PATH": prefix}
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = str(free.getsockname()[1])
-    merged = dict(os.environ, PYTHONDONTWRITEBYTECODE="1", PORT=port)
+    merged = dict(os.environ, PYTHONDONTWRITEBYTECODE="1", PORT=str(port))
     for name, path in extra.items():
         merged[name] = ":".join(filter(None, (str(path), os.environ.get(name))))
     return merged
@@ -51,7 +48,11 @@ def environment(prefix):
 
 class Reader:
     def __init__(self, page, prefix, folder):
-        self.page, self.folder, self.known = page, folder, environment(prefix)
+        # Reserved for a server that reuses the address. This socket itself does not listen.
+        self.reserved = socket.socket()
+        self.reserved.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        self.reserved.bind(("127.0.0.1", 0))
+        self.page, self.folder, self.known = page, folder, environment(prefix, self.reserved.getsockname()[1])
         # `python3` is the one that the module was built for.
         tools = folder / ".tools"
         tools.mkdir()
@@ -60,7 +61,7 @@ class Reader:
         self.files, self.ran = set(), 0
 
     def run(self, command, program, line):
-        done = subprocess.run(command, input=program, cwd=self.folder, env=self.known, timeout=300,
+        done = subprocess.run(command, input=program, cwd=self.folder, env=self.known,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         self.ran += 1
         if done.returncode != 0:

@@ -25,9 +25,7 @@ double processor_time() {
 
 std::string refusal_of_bytes(const std::filesystem::path& path, const std::string& bytes) {
     put_bytes(path, bytes);
-    ReadOptions options;
-    options.time_limit_s = 20;  // a library that does not return fails the test sooner
-    const std::string message = refusal(path, options);
+    const std::string message = refusal(path);
     EXPECT_TRUE(one_line_about(message, path)) << message;
     return message;
 }

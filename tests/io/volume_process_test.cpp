@@ -105,8 +105,9 @@ TEST_F(HelperProcess, one_that_computes_for_ever_ends_at_the_limit_of_its_proces
         << message;
     EXPECT_FALSE(has_children());
     // Without being asked for, there is a limit by the size of the file, as the child sees it.
-    const std::string limit =
-        refusal_with("sleep 0.5; grep 'Max cpu time' /proc/self/limits >&2; kill -ABRT $$");
+    const std::string limit = refusal_with(
+        "until grep 'Max cpu time  *[0-9]' /proc/self/limits >&2; do sleep 0.01; done\n"
+        "kill -ABRT $$");
     EXPECT_TRUE(contains(limit, "Max cpu time 121")) << limit;
     const std::string ended = refusal_with("echo '{\"doing\":\"slice7.dcm\"}' >&4; kill -XCPU $$");
     EXPECT_TRUE(contains(ended, "took more than 121 s of processor time at slice7.dcm")) << ended;

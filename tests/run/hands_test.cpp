@@ -319,6 +319,7 @@ TEST(PacedHands, feel_and_are_recorded_while_one_thread_edits_and_another_looks_
         }
     });
     std::array<bool, 2> presses{}, edited{};
+    bool lasts = false;
     EXPECT_TRUE(test::comes_true([&] {
         for (const std::size_t hand : {0, 1}) {
             run::Run& run = hand == 0 ? a : b;
@@ -326,8 +327,9 @@ TEST(PacedHands, feel_and_are_recorded_while_one_thread_edits_and_another_looks_
             const auto now = run.snapshot();
             presses[hand] |= now && now->session.tick.force.norm() > 0.05;
             edited[hand] |= now && now->session.version > 20;
+            lasts |= hand == 0 && now && now->number > 200;
         }
-        return presses[0] && presses[1] && edited[0] && edited[1];
+        return lasts && presses[0] && presses[1] && edited[0] && edited[1];
     }));
     edits = {};
     b.use_device(devices::parse_device("mouse"));

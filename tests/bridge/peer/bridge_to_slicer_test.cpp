@@ -115,9 +115,11 @@ TEST(BridgeToSlicer, serves_two_clients_of_which_one_breaks_off_and_one_sends_ga
 TEST(BridgeToSlicer, cannot_push_a_volume_over_edits_that_were_not_saved) {
     const ScratchFolder folder;
     const int port = free_port();
-    const auto touch = program(folder, port, "--igtl", {"--brush", "carve 3"});
-    const Outcome pushed = peer(folder, "connect", port,
-                                {"poses", "120", "image", "Ball", "16", "200", "await", "STRING"});
+    support::put_bytes(folder / "c.txt", "0 fill 1,1,1:2,2,2 9\n0 isovalue 0.3\n");
+    const auto touch = program(folder, port, "--igtl", {"--commands", "c.txt"});
+    const Outcome pushed =
+        peer(folder, "connect", port,
+             {"status", "isovalue 0.3", "image", "Ball", "16", "200", "await", "STRING"});
     EXPECT_TRUE(contains(pushed.out, "not done: the volume felt has edits")) << pushed.out;
     EXPECT_EQ(touch->finish(SIGINT).status, 130);
 }

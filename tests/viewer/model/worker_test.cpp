@@ -118,7 +118,7 @@ TEST(Worker, one_that_opens_a_volume_of_a_silent_server_ends_when_it_is_cancelle
     const auto begin = std::chrono::steady_clock::now();
     worker.cancel();
     wait_for(worker);
-    EXPECT_LT(std::chrono::steady_clock::now() - begin, 10s) << "of 50; usually 0.03";
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, 40s) << "of 50; usually 0.03";
     EXPECT_FALSE(worker.finish());
 }
 

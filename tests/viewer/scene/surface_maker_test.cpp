@@ -192,7 +192,7 @@ TEST(SurfaceMaker, can_be_destroyed_while_it_extracts) {
     Made made;
     made.maker.set_field(noise_of(160), {128});
     wait_until([&] { return !made.all.empty(); });
-    EXPECT_FALSE(made.all.back().at(0).finished);
+    EXPECT_FALSE(made.all.front().at(0).finished);
 }
 
 TEST(SurfaceMaker, nothing_comes_of_data_that_were_cleared_or_replaced) {
