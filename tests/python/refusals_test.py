@@ -44,6 +44,7 @@ ACCEPTED = {
 
 
 FIELD = palpate.Field(palpate.scene("sphere:12x12x12", "float32").volume)
+NOTHING = numpy.empty((0, 3))
 
 
 def refused(change):
@@ -128,3 +129,10 @@ def test_a_setup_that_was_refused_is_as_before_wherever_it_is_nested():
                                (setup, "speed", 1e4)):
         assert refused(lambda: setattr(owner, name, value))
     assert setup == before
+
+
+@pytest.mark.parametrize("call", [
+    lambda: palpate.explore(FIELD, 0.5, trajectories=1, trajectory_s=1e-3), lambda: palpate.ray_ns(FIELD, 0.5, NOTHING, NOTHING),
+    lambda: palpate.closed_loop(palpate.Renderer(FIELD, 0.5), "simulated", seconds=5e-4)])
+def test_less_than_one_tick_or_ray_is_refused(call):
+    assert refused(call)
