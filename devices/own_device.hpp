@@ -22,8 +22,6 @@ class OwnFunctions {
     /// `rate` [Hz]: how often they are called. `device` tells it from all others of the process.
     /// Throws DeviceError for a device that serves another run.
     OwnFunctions(DeviceInfo info, double rate, std::string device);
-    OwnFunctions(const OwnFunctions&) = delete;
-    OwnFunctions& operator=(const OwnFunctions&) = delete;
     virtual ~OwnFunctions() = default;
 
     /// Any thread.

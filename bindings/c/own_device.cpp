@@ -51,11 +51,6 @@ void check(const palpate_own_device& asked, const DeviceInfo& info) {
     palpate::check(info.limits);
 }
 
-palpate_own_device with_defaults(palpate_own_device asked) {
-    if (asked.rate == 0) asked.rate = 1000;
-    return asked;
-}
-
 /// Two devices of an application have two contexts, or functions of their own.
 std::string claim_of(const palpate_own_device& own) {
     std::array<char, 64> text{};
@@ -136,7 +131,8 @@ std::string name_of(const palpate_own_device& asked) {
 }
 
 std::unique_ptr<Device> make_own_device(const palpate_own_device& asked) {
-    const palpate_own_device own = with_defaults(asked);
+    palpate_own_device own = asked;
+    if (own.rate == 0) own.rate = 1000;
     const DeviceInfo info = info_from(own);
     check(own, info);
     return std::make_unique<devices::OwnDevice>(std::make_shared<Callbacks>(own, info));

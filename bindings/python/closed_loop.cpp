@@ -50,6 +50,7 @@ py::dict closed_loop(const SharedRenderer& renderer, const std::string& text, do
                      double rate, bool straight, const ProgressFunction& progress) {
     check_numbers("rate", rate, ranges::rate);
     check_numbers("seconds", seconds, {0, 1e8 / rate, true, "above 0, for at most 1e8 ticks"});
+    if (seconds * rate < 1) throw std::invalid_argument("seconds: at least one tick is needed");
     Renderer own = renderer;
     ForceState state;
     std::vector<LoopTick> ticks(static_cast<std::size_t>(seconds * rate));

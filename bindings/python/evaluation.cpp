@@ -56,10 +56,11 @@ void bind_explore(py::module_& module) {
            const Wanted& wanted, const ProgressFunction& progress) {
             if (!(speed > 0 && std::isfinite(speed)) || !(touching >= 0 && touching <= 1) ||
                 !(depth >= 0 && std::isfinite(depth)) || trajectories < 1 ||
-                !(seconds > 0 && seconds * trajectories <= most_seconds)) {
+                !(seconds * evaluation::ExploringHand{}.rate_hz >= 2 &&
+                  seconds * trajectories <= most_seconds)) {
                 throw std::invalid_argument(
                     "a hand has a speed above 0, touches for 0 to 1 of its time, presses 0 mm or "
-                    "more deep, and follows a trajectory or more for at most a day");
+                    "more deep, and follows a trajectory or more for 2 ms to a day");
             }
             felt_level(field, isovalue, "exact");
             return explore({name, field, isovalue},

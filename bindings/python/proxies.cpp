@@ -14,6 +14,7 @@
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
 #include "bindings/python/hands.hpp"
+#include "bindings/python/moving.hpp"
 #include "bindings/python/progress.hpp"
 #include "bindings/python/setup.hpp"
 #include "palpate/baselines/methods.hpp"
@@ -134,9 +135,10 @@ struct PlacedProxy {
     Proxy proxy;
 };
 
-ProxyTrace follow(PlacedProxy& placed, const Doubles& hips,
+ProxyTrace follow(Shared<PlacedProxy>& placed, const Doubles& hips,
                   const std::optional<PressThrough>& press, double scale, bool with_steps,
                   const ProgressFunction& progress) {
+    Moving<PlacedProxy> moving(placed, "follow()");
     const std::vector<Vec3> points = hips_from(hips);
     if (!(scale > 0)) throw std::invalid_argument("scale: a number above 0 is needed");
     if (!press) {
@@ -159,16 +161,15 @@ ProxyTrace follow(PlacedProxy& placed, const Doubles& hips,
                     &context};
     }
     ReportedItems slices(progress_of(progress), points.size(), updates_in_slice);
-    {
-        const GilReleased unlocked;
+    moving.without_gil([&](PlacedProxy& own) {
         for (std::size_t i = 0; i < points.size(); ++i) {
             context.first = static_cast<std::int64_t>(i);
             Clock::duration took{};
-            const ProxyUpdate update = way.update(placed.proxy, points[i], observer, took);
+            const ProxyUpdate update = way.update(own.proxy, points[i], observer, took);
             rows.put(i, update, took);
             slices.done();
         }
-    }
+    });
     if (with_steps) trace.steps = dict_of(steps);
     return trace;
 }
@@ -365,6 +366,7 @@ std::pair<py::array_t<double>, py::array_t<double>> cast_rays(const Field& field
 double ray_ns(const Field& field, const io::Level& level, const Doubles& starts,
               const Doubles& ends) {
     const Rays rays(starts, ends);
+    if (rays.from.empty()) throw std::invalid_argument("starts: at least one is needed");
     const double isovalue = io::level_in(field.volume(), level);
     const GilReleased unlocked;
     const auto begin = Clock::now();
@@ -414,13 +416,14 @@ void bind_proxies(py::module_& module) {
     module.attr("STEP_KINDS") =
         py::make_tuple("place", "free move", "cross", "goal", "slide", "recover", "press");
     bind_trace(module);
-    py::class_<PlacedProxy>(module, "Proxy",
-                            "The proxy alone, without forces. A value: a copy goes on exactly as "
-                            "its original.")
+    using P = Shared<PlacedProxy>;
+    py::class_<P>(module, "Proxy",
+                  "The proxy alone, without forces. A value: a copy goes on exactly as its "
+                  "original.")
         .def(py::init([](const Field& field, const io::Level& level, const Vec3& start,
                          const std::string& method) {
                  const Way way = way_of(field, level, method);
-                 return PlacedProxy{way, way.placed(start)};
+                 return P({way, way.placed(start)});
              }),
              py::arg("field"), py::arg("isovalue"), py::arg("start"), py::arg("method") = "exact",
              "Put at `start` [mm, physical], or the nearest free place. method: of methods().")
@@ -428,10 +431,12 @@ void bind_proxies(py::module_& module) {
              py::arg("penetrability") = py::none(), py::arg("scale") = 1.0,
              py::arg("steps") = false, py::arg("progress") = py::none(),
              "An update for each place of the hand [mm, physical], shape (n, 3), in order: a\n"
-             "ProxyTrace. scale: mm of volume per mm of hand, for the threshold of penetrability.")
-        .def_property_readonly("scp", [](const PlacedProxy& p) { return p.proxy.scp_physical; })
-        .def("__copy__", [](const PlacedProxy& p) { return p; })
-        .def("__deepcopy__", [](const PlacedProxy& p, const py::dict&) { return p; });
+             "ProxyTrace. scale: mm of volume per mm of hand, for the threshold of penetrability.\n"
+             "If progress raises, the proxy is as before. RuntimeError while another thread is in\n"
+             "follow().")
+        .def_property_readonly("scp", [](const P& p) { return p.proxy.scp_physical; })
+        .def("__copy__", &P::copied)
+        .def("__deepcopy__", [](const P& p, const py::dict&) { return p.copied(); });
     module.def(
         "follow_each", &follow_each, py::arg("field"), py::arg("isovalue"), py::arg("hips"),
         py::arg("first"), py::arg("method") = "exact", py::arg("threads") = 0, py::kw_only(),

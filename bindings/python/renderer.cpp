@@ -74,37 +74,11 @@ std::vector<TickInput> states_from(const Doubles& time, const Doubles& position,
     return states;
 }
 
-/// Other threads cannot change the renderer while this exists, also if the GIL is released.
-class Moving {
-  public:
-    explicit Moving(SharedRenderer& renderer) : renderer_(renderer.changeable()) {
-        renderer_.moves = true;
-    }
-    ~Moving() { renderer_.moves = false; }
-    Moving(const Moving&) = delete;
-    Moving& operator=(const Moving&) = delete;
-
-    /// Calls move(copy) without the GIL. Afterwards the renderer is as that copy; if it throws, as
-    /// before.
-    template <class Move>
-    void without_gil(const Move& move) {
-        Renderer own = renderer_;
-        {
-            const GilReleased unlocked;
-            move(own);
-        }
-        static_cast<Renderer&>(renderer_) = std::move(own);
-    }
-
-  private:
-    SharedRenderer& renderer_;
-};
-
 py::dict follow_ticks(SharedRenderer& renderer, const Doubles& time, const Doubles& position,
                       const std::optional<Doubles>& pointing, bool alternatives,
                       const ProgressFunction& progress) {
-    std::optional<Moving> moving;
-    if (!alternatives) moving.emplace(renderer);
+    std::optional<Moving<Renderer>> moving;
+    if (!alternatives) moving.emplace(renderer, "follow()");
     const std::vector<TickInput> states = states_from(time, position, pointing);
     std::vector<Tick> ticks(states.size());
     ReportedItems slices(progress_of(progress), ticks.size(), updates_in_slice);
@@ -140,7 +114,7 @@ py::array_t<double> batch_ns(SharedRenderer& renderer, const Doubles& time, cons
                              std::size_t batch, const ProgressFunction& progress) {
     using SteadyClock = std::chrono::steady_clock;
     if (batch == 0) throw std::invalid_argument("batch: at least one tick is needed");
-    Moving moving(renderer);
+    Moving moving(renderer, "batch_ns()");
     const std::vector<TickInput> states = states_from(time, position, std::nullopt);
     std::vector<double> times(states.size() / batch);
     ReportedItems slices(progress_of(progress), times.size(), batches_in_slice);

@@ -373,3 +373,25 @@ def test_the_status_of_a_tick_says_that_it_waits_for_samples(tmp_path):
     finally:
         may_answer.set()
         server.shutdown()
+
+
+def test_a_proxy_that_a_call_moves_may_be_looked_at_and_copied_and_no_more():
+    field, isovalue = ball()
+    hips = numpy.linspace((-9.0, 0, 0), (-4.0, 0, 0), 50_000)
+    proxy, again = (palpate.Proxy(field, isovalue, hips[0]) for _ in range(2))
+    before, copies = proxy.scp, []
+
+    def look(fraction):
+        with pytest.raises(RuntimeError, match="^another thread moves this Proxy, in .*: wait for its end, or use a copy$"):
+            proxy.follow(hips)
+        assert (proxy.scp == before).all()
+        copies.append(copy.copy(proxy))
+        if len(copies) == 2:
+            raise KeyError("stop")
+
+    with pytest.raises(KeyError):
+        proxy.follow(hips, progress=look)
+    assert (proxy.scp == before).all()
+    wanted = again.follow(hips).scp
+    for one in (proxy, *copies):
+        assert (one.follow(hips).scp == wanted).all()

@@ -44,6 +44,7 @@ ACCEPTED = {
 
 
 FIELD = palpate.Field(palpate.scene("sphere:12x12x12", "float32").volume)
+NOTHING = numpy.empty((0, 3))
 
 
 def refused(change):
@@ -138,3 +139,10 @@ def test_a_name_that_a_header_cannot_hold_is_refused_before_anything_is_written(
     assert not list(tmp_path.iterdir())
     palpate.write(volume, (tmp_path / name).with_suffix(other))
     assert numpy.array_equal(palpate.load((tmp_path / name).with_suffix(other)).volume.array, volume.array)
+
+
+@pytest.mark.parametrize("call", [
+    lambda: palpate.explore(FIELD, 0.5, trajectories=1, trajectory_s=1e-3), lambda: palpate.ray_ns(FIELD, 0.5, NOTHING, NOTHING),
+    lambda: palpate.closed_loop(palpate.Renderer(FIELD, 0.5), "simulated", seconds=5e-4)])
+def test_less_than_one_tick_or_ray_is_refused(call):
+    assert refused(call)

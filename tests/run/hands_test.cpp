@@ -129,7 +129,7 @@ TEST(Hands, that_were_recorded_play_again_together_as_each_alone) {
 
 TEST(Hands, play_their_sequence_together_by_a_command_to_one_of_them) {
     const auto data = test::stepped_data(test::loaded("synthetic:beating:24x24x24"));
-    Run first(data, test::with_device(holding)), second(data, test::with_device(circling));
+    run::Run first(data, test::with_device(holding)), second(data, test::with_device(circling));
     first.start();
     second.start();
     const auto both_reach = [&](auto&& holds) {
@@ -154,7 +154,7 @@ TEST(Hands, play_their_sequence_together_by_a_command_to_one_of_them) {
 }
 
 TEST(Hands, on_a_volume_refuse_commands_for_a_sequence) {
-    Run run(shared_ball(), test::with_device(holding));
+    run::Run run(shared_ball(), test::with_device(holding));
     run.start();
     EXPECT_THROW(run.send(command::Speed{1}), std::invalid_argument);
     EXPECT_THROW(run.send(command::Moment{1}), std::invalid_argument);

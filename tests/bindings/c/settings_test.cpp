@@ -84,6 +84,23 @@ TEST_F(CSettings, each_is_described_and_its_default_is_in_its_range) {
     EXPECT_EQ(palpate_setting_describe(palpate_setting_count(), &setting), PALPATE_INVALID);
 }
 
+TEST_F(CSettings, an_error_is_one_line_of_whole_characters) {
+    EXPECT_EQ(palpate_renderer_set(renderer_, "a\nb\x7f", 1), PALPATE_INVALID);
+    const std::string line = palpate_last_error();
+    EXPECT_NE(line.find("a b "), std::string::npos) << line;
+    for (std::size_t shift = 0; shift < 3; ++shift) {
+        std::string name(shift, 'x');
+        for (int i = 0; i < 1000; ++i) name += "\u20ac";  // three bytes each
+        EXPECT_EQ(palpate_renderer_set(renderer_, name.c_str(), 1), PALPATE_INVALID);
+        const std::string cut = palpate_last_error();
+        const std::size_t first = cut.find("\u20ac"), last = cut.rfind("\u20ac");
+        ASSERT_NE(last, std::string::npos) << cut;
+        EXPECT_GT(cut.size(), 1000U);
+        EXPECT_EQ(last + 3, cut.size()) << cut.substr(last);
+        EXPECT_EQ((last - first) % 3, 0U);
+    }
+}
+
 TEST_F(CSettings, what_is_set_by_any_name_is_what_a_renderer_has) {
     for (const palpate_setting& one : described()) {
         const double before = value(one.name), wanted = another(before);
