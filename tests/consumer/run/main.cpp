@@ -18,29 +18,25 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Feels the file until the device's hand has finished, and records that. How many ticks there
-/// were.
+/// Feels the file until there is a force, and records that. How many ticks there were.
 std::int64_t feel(const fs::path& volume, const fs::path& recording) {
     run::Setup setup;
-    setup.device = devices::parse_device("simulated:omni,hand=press,seconds=1");
+    setup.device = devices::parse_device("simulated:omni,hand=press,seconds=1,loop=yes");
     setup.field.isovalue = io::Level{0.0};  // the surface of the ball
     setup.real_time = false;
     run::Run run(std::make_shared<run::Data>(run::load(run::source_named(volume.string()))), setup);
     run.record(recording);
     run.start();
     double greatest = 0;
-    while (true) {
+    while (greatest < 0.1) {  // however long a busy machine takes
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
         const auto now = run.snapshot();
-        if (!now) continue;
-        greatest = std::max(greatest, now->session.tick.force.norm());
-        if (now->session.device.status == DeviceStatus::finished) break;
+        if (now) greatest = std::max(greatest, now->session.tick.force.norm());
     }
     run.stop();
     const std::int64_t ticks = run.stop_recording();
     std::printf("felt with %s: %lld ticks, at most %.2f N\n", run.device().model.c_str(),
                 static_cast<long long>(ticks), greatest);
-    if (!(greatest > 0.1)) throw std::runtime_error("the hand felt nothing");
     return ticks;
 }
 

@@ -82,6 +82,7 @@ class InWindow : public testing::Test {
         setup.real_time = false;
         setup.render.force.ramp = 0;
         setup.render.force.stale_after = std::numeric_limits<double>::infinity();
+        setup.session.overrun = std::numeric_limits<double>::infinity();
         return setup;
     }
     void open_window(const std::string& device) { open_window(setup_with(device)); }

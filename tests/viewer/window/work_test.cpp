@@ -6,6 +6,7 @@
 #include <QPushButton>
 
 #include "apps/viewer/window/file_dialogs.hpp"
+#include "viewer/window/held_reader.hpp"
 #include "viewer/window/window_fixture.hpp"
 
 namespace palpate::viewer::test {
@@ -29,13 +30,11 @@ class Work : public InWindow {
         }
         ASSERT_EQ(window_->measuring().measurements().size(), before + 1);
     }
-    /// A source whose reading takes long enough to change what is open.
-    run::Source slow_source() {
-        const auto ball = run::load(run::source_named("synthetic:sphere:128x128x128")).volume;
-        io::write_volume(ball, scratch_.path() / "slow.nrrd");
-        run::Source slow = run::source_named(scratch("slow.nrrd").toStdString());
-        slow.smooth = 24;
-        return slow;
+    /// A file, which a HeldReader does not read before it may.
+    run::Source other_source() {
+        const auto ball = run::load(run::source_named("synthetic:sphere:32x32x32")).volume;
+        io::write_volume(ball, scratch_.path() / "other.nrrd");
+        return run::source_named(scratch("other.nrrd").toStdString());
     }
     int size() const { return window_->live()->field().geometry().size[0]; }
 };
@@ -43,12 +42,15 @@ class Work : public InWindow {
 TEST_F(Work, done_while_another_file_is_read_is_asked_about_before_that_takes_its_place) {
     feel("synthetic:sphere:48x48x48");
     press_until_force();
+    const run::Source other = other_source();
     for (const bool edit : {true, false}) {
-        window_->files().open_volume(slow_source());
+        const HeldReader reader(scratch_.path());
+        window_->files().open_volume(other);
         ASSERT_TRUE(window_->files().loading());
         edit ? carve() : measure();
-        ASSERT_TRUE(window_->files().loading()) << "it was read too quickly for this test";
+        ASSERT_TRUE(window_->files().loading());
         answer(QMessageBox::Cancel);
+        reader.release();
         wait_until([&] { return !window_->files().loading(); });
         wait_until_settled();
         EXPECT_EQ(size(), 48);
@@ -58,8 +60,8 @@ TEST_F(Work, done_while_another_file_is_read_is_asked_about_before_that_takes_it
         wait_until([&] { return !edits().changed; });
     }
     answer(QMessageBox::Discard);
-    window_->files().settle_work([this] { window_->files().open_volume(slow_source()); });
-    wait_until([&] { return !window_->files().loading() && size() == 128; });
+    window_->files().settle_work([&] { window_->files().open_volume(other); });
+    wait_until([&] { return !window_->files().loading() && size() == 32; });
     EXPECT_TRUE(window_->measuring().measurements().empty()) << "given up before, asked once";
 }
 
@@ -186,15 +188,17 @@ TEST_F(Work, on_a_live_source_or_an_address_is_remembered_by_that_name) {
 TEST_F(Work, with_a_very_long_name_does_not_make_the_window_wider) {
     feel("synthetic:sphere:24x24x24");
     const int width = window_->width();
-    run::Source slow = slow_source();
+    run::Source other = other_source();
     const std::string longer = (scratch_.path() / (std::string(200, 'W') + ".nrrd")).string();
-    std::filesystem::rename(scratch_.path() / "slow.nrrd", longer);
-    std::get<run::FileSource>(slow.from).path = longer;
-    window_->files().open_volume(slow);
+    std::filesystem::rename(scratch_.path() / "other.nrrd", longer);
+    std::get<run::FileSource>(other.from).path = longer;
+    auto reader = std::make_unique<HeldReader>(scratch_.path());
+    window_->files().open_volume(other);
     wait_until([&] { return strip() != nullptr; });
     QApplication::processEvents();
     EXPECT_EQ(window_->width(), width);
     window_->files().loader().abandon();
+    reader.reset();
     std::filesystem::copy_file(longer, scratch_.path() / "short.nrrd");
     OverlayControls& overlays = window_->panel().overlay_controls();
     const auto width_with = [&](const std::string& overlay) {
