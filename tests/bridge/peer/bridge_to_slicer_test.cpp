@@ -21,7 +21,7 @@ using support::ScratchFolder;
 /// A port that was free a moment ago.
 int free_port() {
     const Listening listening = listen_at("127.0.0.1", 0);
-    ::close(listening.socket);
+    for (const int socket : listening.sockets) ::close(socket);
     return listening.port;
 }
 
