@@ -10,6 +10,14 @@
 #include <utility>
 
 namespace palpate::app {
+namespace {
+
+/// They act on a session without settings only.
+const std::vector<std::string> without_settings{"--tool",      "--tool-spacing", "--penetrability",
+                                                "--threshold", "--minimum",      "--range",
+                                                "--facing"};
+
+}  // namespace
 
 void ViewOptions::add_to(CLI::App& command) {
     command_ = &command;
@@ -52,7 +60,10 @@ void ViewOptions::warn() const {
     if (session.empty() && play.empty()) return;
     std::vector<std::string> used{"--session", "--play",       "--window", "--after",
                                   "--device",  "--screenshot", "--quiet"};
-    if (!session.empty()) std::ranges::move(run.beside_session(), std::back_inserter(used));
+    if (!session.empty()) {
+        std::ranges::move(run.beside_session(), std::back_inserter(used));
+        std::ranges::copy(without_settings, std::back_inserter(used));
+    }
     if (!has_volume()) used.emplace_back("VOLUME");
     std::vector<std::string> useless;
     for (const CLI::Option* option : command_->get_options()) {
@@ -62,6 +73,10 @@ void ViewOptions::warn() const {
     warn_of_no_effect(*command_, useless,
                       "the " + std::string(play.empty() ? "session" : "recording") +
                           " gives the data and the settings");
+}
+
+void ViewOptions::warn_beside_settings() const {
+    warn_of_no_effect(*command_, without_settings, "the session has settings of its own");
 }
 
 std::optional<std::array<int, 2>> ViewOptions::window_size() const {

@@ -26,6 +26,8 @@ struct ViewOptions {
     /// Warns on standard error of options that do nothing. After settle(), and only in the viewer:
     /// `palpate view` becomes it, and each warning shall appear once.
     void warn() const;
+    /// The same of those that do nothing because the session file has settings.
+    void warn_beside_settings() const;
     /// Width and height of the window [pixels]; nothing: not given. Throws std::invalid_argument
     /// for a size that is none.
     std::optional<std::array<int, 2>> window_size() const;

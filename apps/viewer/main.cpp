@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <utility>
 
 #include "apps/options/exit_status.hpp"
 #include "apps/options/values.hpp"
@@ -57,7 +58,11 @@ int show(QApplication& application, const app::ViewOptions& options) {
     for (const auto button : options.run.named_buttons) {
         request.buttons.emplace_back(button, request.setup.buttons.*button);
     }
-    request.named_settings = options.run.render.named();
+    request.named_settings = [use = options.run.render.named(), &options,
+                              told = false](RendererSettings& of_session) mutable {
+        use(of_session);
+        if (!std::exchange(told, true)) options.warn_beside_settings();
+    };
     viewer::MainWindow window(request);
     if (const auto size = options.window_size()) window.resize((*size)[0], (*size)[1]);
     if (!options.size.empty() || !options.screenshot.empty()) window.forget_layout();

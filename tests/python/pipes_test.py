@@ -54,7 +54,9 @@ except BaseException as error:
     caught = error
 print(repr(caught))
 """
-        self.process = subprocess.Popen([sys.executable, "-B", "-c", program, path], text=True, stdout=subprocess.PIPE,
+        # Without the warning that edits are kept, which are in the test's folder then.
+        self.process = subprocess.Popen([sys.executable, "-B", "-W", "ignore", "-c", program, path], text=True,
+                                        env={**os.environ, "TMPDIR": str(path.parent)}, stdout=subprocess.PIPE,
                                         stderr=subprocess.STDOUT)
         assert self.process.stdout.readline() == "go\n"
 

@@ -328,9 +328,8 @@ TEST_F(Window, a_session_is_recorded_and_played_back_with_the_timeline) {
     save("recording");
     press(Qt::Key_R, Qt::ControlModifier);
     EXPECT_EQ(window_->live()->recording(), nullptr);
-    EXPECT_TRUE(window_->statusBar()->currentMessage().contains(
-        QRegularExpression("^Recorded [1-9][0-9]*\\.[0-9] s$")))
-        << window_->statusBar()->currentMessage().toStdString();
+    const QRegularExpression told("^Recorded [1-9][0-9]*\\.[0-9] s$");
+    wait_until([&] { return window_->statusBar()->currentMessage().contains(told); });
     wait_until([&] { return !part<QLabel>("recording_clock").isVisible(); });
     ASSERT_TRUE(QFile::exists(file));
     type_in_dialog(Qt::Key_O, file);

@@ -45,14 +45,15 @@ TEST(WindowSize, is_read_or_refused) {
 }
 
 /// What is said of options that do nothing.
-std::string warning_for(const std::string& line) {
+std::string warning_for(const std::string& line,
+                        void (app::ViewOptions::*warn)() const = &app::ViewOptions::warn) {
     CLI::App command;
     app::ViewOptions options;
     options.add_to(command);
     command.parse(line);
     options.settle();
     testing::internal::CaptureStderr();
-    options.warn();
+    (options.*warn)();
     return testing::internal::GetCapturedStderr();
 }
 
@@ -61,10 +62,15 @@ TEST(ViewOptions, beside_a_session_each_one_wins_or_is_warned_of) {
                           "--dead-man 1 --overrun 0.1 --friction 0.2 --scale 2 -q "
                           "--device mouse --window 800x600"),
               "");
-    EXPECT_EQ(warning_for("s.json --tool sphere:2 --penetrability threshold --threshold 2 "
-                          "--facing left -i 3 --dims 3x3x3"),
-              "palpate: warning: --dims, --facing, --isovalue, --penetrability, --threshold, "
-              "--tool do nothing: the session gives the data and the settings\n");
+    EXPECT_EQ(warning_for("s.json --labels l.nrrd -i 3 --dims 3x3x3"),
+              "palpate: warning: --dims, --isovalue, --labels do nothing: the session gives the "
+              "data and the settings\n");
+    const std::string unless_there_are_settings =
+        "s.json --tool sphere:2 --penetrability threshold --threshold 2 --facing left";
+    EXPECT_EQ(warning_for(unless_there_are_settings), "");
+    EXPECT_EQ(warning_for(unless_there_are_settings, &app::ViewOptions::warn_beside_settings),
+              "palpate: warning: --tool, --penetrability, --threshold, --facing do nothing: the "
+              "session has settings of its own\n");
 }
 
 TEST(ViewOptions, beside_a_recording_nothing_is_felt) {
