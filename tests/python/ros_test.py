@@ -178,7 +178,7 @@ def test_a_session_that_hangs_or_is_killed_leaves_no_force(ros, end):
         peer.height = 100  # the hand begins outside
         program = subprocess.Popen([os.environ["PALPATE"], "ros", "synthetic:sphere:40x40x40",
                                     "--ros", str(ros.version),
-                                    "--arm", "/left", "--pose-rate", "50", "__name:=killed"], stdout=subprocess.PIPE, text=True)
+                                    "--arm", "/left", "--pose-rate", "10", "__name:=killed"], stdout=subprocess.PIPE, text=True)
         try:
             assert "with ros" in program.stdout.readline()
             until(lambda: peer.wrench.get_num_connections() == 1 and peer.forces)
@@ -191,7 +191,7 @@ def test_a_session_that_hangs_or_is_killed_leaves_no_force(ros, end):
                 nonlocal lowest, reach
                 time.sleep(0.01)
                 if not lowest and not peer.rests():
-                    lowest = peer.height - 4  # 0.2 N/mm: enough for a force that counts
+                    lowest = peer.height - 8  # 0.05 N/mm: enough for a force that counts
                 peer.height -= 0.1 if lowest else 0.5
                 if peer.height < lowest:
                     peer.height = lowest + reach if lowest else 100

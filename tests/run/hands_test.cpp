@@ -149,8 +149,9 @@ TEST(Hands, play_their_sequence_together_by_a_command_to_one_of_them) {
     EXPECT_TRUE(both_reach([](const Snapshot& now) { return now.speed == -2; }));
     first.send(command::Speed{0});
     first.send(command::Moment{0.25});
-    EXPECT_TRUE(both_reach([](const Snapshot& now) { return now.session.moment == 0.25; }));
-    EXPECT_EQ(data->player().state().time, 0.25);
+    EXPECT_TRUE(both_reach([&](const Snapshot& now) {
+        return now.session.moment == 0.25 && data->player().state().time == 0.25;
+    }));
 }
 
 TEST(Hands, on_a_volume_refuse_commands_for_a_sequence) {
