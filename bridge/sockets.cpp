@@ -38,20 +38,23 @@ int socket_for(const addrinfo& address) {
                     address.ai_protocol);
 }
 
+/// -1, keeping the errno that says why.
+int refused(int socket) {
+    const int error = errno;
+    ::close(socket);
+    errno = error;
+    return -1;
+}
+
 /// -1, with an errno, if there can be none.
 int listening_socket(const addrinfo& address) {
     const int socket = socket_for(address);
     if (socket < 0) return -1;
     const int yes = 1;
     setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-    if (::bind(socket, address.ai_addr, address.ai_addrlen) == 0 &&
-        ::listen(socket, SOMAXCONN) == 0) {
-        return socket;
-    }
-    const int error = errno;
-    ::close(socket);
-    errno = error;
-    return -1;
+    const bool listens = ::bind(socket, address.ai_addr, address.ai_addrlen) == 0 &&
+                         ::listen(socket, SOMAXCONN) == 0;
+    return listens ? socket : refused(socket);
 }
 
 bool lacks_address(int error) {
@@ -105,13 +108,9 @@ int connect_to(const std::string& host, int port, int attempt) {
     const addrinfo& address = *all[static_cast<std::size_t>(attempt) % all.size()];
     const int socket = socket_for(address);
     if (socket < 0) return -1;
-    if (::connect(socket, address.ai_addr, address.ai_addrlen) == 0 || errno == EINPROGRESS) {
-        return socket;
-    }
-    const int error = errno;
-    ::close(socket);
-    errno = error;
-    return -1;
+    const bool connects =
+        ::connect(socket, address.ai_addr, address.ai_addrlen) == 0 || errno == EINPROGRESS;
+    return connects ? socket : refused(socket);
 }
 
 int connection_error(int socket) {
