@@ -5,12 +5,12 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <limits>
 #include <stdexcept>
 #include <string>
 #include <thread>
 
-#include "palpate/io/volume_file.hpp"
 #include "palpate/renderer.hpp"
 #include "palpate/run/setup.hpp"
 #include "support/eventually.hpp"
@@ -113,8 +113,9 @@ TEST(CVolume, a_frame_of_a_sequence_is_loaded_by_its_number_from_1_and_counts_as
 
 TEST(CVolume, options_that_change_nothing_are_refused) {
     const support::ScratchFolder folder;
-    const auto ball = run::source_named("synthetic:sphere:12x12x12");
-    io::write_volume(run::load(ball).volume, folder / "still.nrrd");
+    std::ofstream(folder / "still.nrrd", std::ios::binary)
+        << "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\n"
+        << "\1\2\3\4\5\6\7\x8";
     const auto refusal = [&](std::int32_t frame, const char* series) {
         PALPATE_STRUCT(palpate_load_options, options);
         options.frame = frame;
