@@ -1,27 +1,25 @@
-// Requests to the system of a thread that talks to a device. See link.hpp. Linux.
-#include <pthread.h>
-#include <sched.h>
-#include <sys/prctl.h>
+// Asks the system for the privileges of a thread that talks to a device. Linux and Windows give it
+// those of the servo's thread. See link.hpp.
+#include <optional>
 
-#include <cerrno>
-#include <csignal>
-#include <ctime>
-
+#include "devices/ends.hpp"
 #include "devices/link.hpp"
+#include "servo/clocks.hpp"
+#include "servo/privileges.hpp"
 
 namespace palpate::devices {
 namespace {
 
-constexpr std::int64_t second_ns = 1'000'000'000;
+constexpr int priority_of_devices = 81;  // just above the servo's
 
-thread_local bool talks_to_a_device = false;
+thread_local bool talks_to_a_device = false;  // plain, for signal handlers
+thread_local std::optional<Alarm> alarm;
 
 }  // namespace
 
 void sleep_until(std::int64_t ns) noexcept {
-    const timespec until{ns / second_ns, ns % second_ns};
-    while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
-    }
+    if (alarm) return alarm->sleep_until(ns);
+    Alarm().sleep_until(ns);
 }
 
 bool is_device_thread() noexcept {
@@ -30,16 +28,9 @@ bool is_device_thread() noexcept {
 
 void prepare_device_thread() noexcept {
     talks_to_a_device = true;
-    ::prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
-    sched_param parameter{};
-    parameter.sched_priority = 81;
-    ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameter);
-    sigset_t others;
-    ::sigfillset(&others);
-    for (const int crash : {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGTRAP, SIGSYS}) {
-        ::sigdelset(&others, crash);
-    }
-    ::pthread_sigmask(SIG_BLOCK, &others, nullptr);
+    alarm.emplace();
+    take_priority(priority_of_devices);
+    leave_ends_to_others();
 }
 
 }  // namespace palpate::devices

@@ -24,15 +24,30 @@ struct Backend {
     std::unique_ptr<Device> (*open)(const DeviceChoice&, const DeviceScene&);
 };
 
+/// With its thread.
+std::unique_ptr<Device> started(auto device) {
+    device->start();
+    return device;
+}
+
 constexpr std::array<Backend, 8> backends{{
     {"simulated", &find_simulated, &open_simulated},
     {"recorded", &find_recorded, &open_recorded},
     {"mouse", &find_mouse, &open_mouse},
-    {"haply", &find_haply, &open_haply},
-    {"openhaptics", &find_openhaptics, &open_openhaptics},
-    {"forcedimension", &find_forcedimension, &open_forcedimension},
-    {"falcon", &find_falcon, &open_falcon},
-    {"spacenav", &find_spacenav, &open_spacenav},
+    {"haply", [] { return haply::find(); },
+     [](const auto& choice, const auto& scene) { return started(haply::open(choice, scene)); }},
+    {"openhaptics", [] { return openhaptics::find(""); },
+     [](const auto& choice, const auto& scene) -> std::unique_ptr<Device> {
+         return openhaptics::open(choice, scene);
+     }},
+    {"forcedimension", [] { return forcedimension::find(""); },
+     [](const auto& choice, const auto& scene) {
+         return started(forcedimension::open(choice, scene));
+     }},
+    {"falcon", [] { return falcon::find(""); },
+     [](const auto& choice, const auto& scene) { return started(falcon::open(choice, scene)); }},
+    {"spacenav", [] { return spacenav::find(); },
+     [](const auto& choice, const auto& scene) { return started(spacenav::open(choice, scene)); }},
 }};
 
 std::vector<DeviceFinding> find_all() {

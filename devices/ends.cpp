@@ -89,4 +89,11 @@ void forget_ends() {
     }
 }
 
+void leave_ends_to_others() noexcept {
+    sigset_t others;
+    ::sigfillset(&others);
+    for (const int crash : crashes) ::sigdelset(&others, crash);
+    ::pthread_sigmask(SIG_BLOCK, &others, nullptr);
+}
+
 }  // namespace palpate::devices

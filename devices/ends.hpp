@@ -14,6 +14,8 @@ void wait_for_zeros() noexcept;
 void handle_ends();
 /// Gives the ends back to what handled them before.
 void forget_ends();
+/// Signals to the program go to other threads than the calling one, but for its own crashes.
+void leave_ends_to_others() noexcept;
 /// Sleeps in a handler.
 void sleep_in_handler(int milliseconds) noexcept;
 

@@ -69,4 +69,7 @@ void forget_ends() {
     ::SetConsoleCtrlHandler(&on_end, FALSE);
 }
 
+/// Windows tells them by a thread of its own.
+void leave_ends_to_others() noexcept {}
+
 }  // namespace palpate::devices

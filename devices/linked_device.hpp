@@ -4,12 +4,13 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <thread>
 
 #include "devices/link.hpp"
 
 namespace palpate::devices {
 
-/// The servo's side of such a device. Its thread uses the Link.
+/// The servo's side of such a device, and its thread, which steps.
 class LinkedDevice : public Device {
   public:
     DeviceReading read(double) noexcept final { return link_.read(timing_.now()); }
@@ -17,28 +18,50 @@ class LinkedDevice : public Device {
     void stop() noexcept final { link_.stop(); }
     bool is_stopping() const noexcept override { return link_.stopping(); }
 
+    /// Starts the thread.
+    void start() {
+        thread_ = std::thread([this] { run(); });
+    }
+    /// One exchange with the device. Tests call it instead.
+    virtual void step() = 0;
+
   protected:
-    explicit LinkedDevice(const Timing& timing = {}) : timing_(timing) {}
+    /// `period` [ns] of the steps.
+    LinkedDevice(const Timing& timing, std::int64_t period) : timing_(timing), period_(period) {}
+
+    /// Waits for the next step. Steps that are late are left out, not made up for.
+    virtual void wait() {
+        due_ = std::max(due_ + period_, timing_.now());
+        timing_.sleep_until(due_);
+    }
+    bool is_ending() const noexcept { return quit_; }
+    /// Ends the thread, which steps until then: each destructor begins with it.
+    void end_thread() {
+        link_.stop();
+        quit_.store(true);
+        if (thread_.joinable()) thread_.join();
+    }
 
     const Timing timing_;
     Link link_;
-};
 
-/// What the thread of a backend does: a step every `period` [ns] until it is to quit. Steps that
-/// are late are left out, not made up for. One that throws, mostly for want of memory, is tried
-/// again.
-void keep_stepping(std::int64_t period, const Timing& timing, const std::atomic<bool>& quit,
-                   auto&& step) {
-    prepare_device_thread();
-    std::int64_t next = timing.now();
-    while (!quit) {
-        try {
-            step();
-        } catch (const std::exception&) {
+  private:
+    void run() {
+        prepare_device_thread();
+        due_ = timing_.now();
+        while (!quit_) {
+            try {
+                step();
+            } catch (const std::exception&) {  // mostly for want of memory: it is tried again
+            }
+            wait();
         }
-        next = std::max(next + period, timing.now());
-        timing.sleep_until(next);
     }
-}
+
+    const std::int64_t period_;
+    std::int64_t due_ = 0;  // [ns] the last step
+    std::atomic<bool> quit_{false};
+    std::thread thread_;
+};
 
 }  // namespace palpate::devices

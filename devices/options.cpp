@@ -2,6 +2,7 @@
 #include "palpate/devices/options.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "io/system/number.hpp"
@@ -64,6 +65,14 @@ double DeviceOptions::number(const std::string& key, double otherwise, double lo
     message += " to ";
     io::append_number(message, high);
     throw std::invalid_argument(message + " is needed");
+}
+
+int DeviceOptions::whole_number(const std::string& key, int otherwise, int low, int high) {
+    const double value = number(key, otherwise, low, high);
+    if (value == std::floor(value)) return static_cast<int>(value);
+    std::string message = "device " + device_ + ": " + key + "=";
+    io::append_number(message, value);
+    throw std::invalid_argument(message + ": a whole number is needed");
 }
 
 bool DeviceOptions::flag(const std::string& key, bool otherwise) {

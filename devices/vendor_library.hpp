@@ -12,6 +12,14 @@
 
 namespace palpate::devices {
 
+/// How a vendor's library is called and installed on this system.
+struct VendorWords {
+    std::vector<std::string> names;  ///< of its files, in the order to try
+    std::string usual;               ///< those that users know
+    // Ends of messages.
+    std::string how_to_install, how_to_attach;
+};
+
 /// A vendor's shared library. It is never unloaded: drivers keep threads and device state in it,
 /// and OpenHaptics must not be unloaded and loaded again. Its symbols are visible to the libraries
 /// that it loads (RTLD_GLOBAL), as those expect.
@@ -20,6 +28,10 @@ class VendorLibrary {
     /// Opens the first of `names` (file names, or paths) that the system's loader finds. Throws
     /// DeviceError with the names tried, the loader's message and `install`.
     VendorLibrary(const std::vector<std::string>& names, const std::string& install);
+    /// Opens `path`; if that is empty, the usual names.
+    VendorLibrary(const std::string& path, const VendorWords& words)
+        : VendorLibrary(path.empty() ? words.names : std::vector<std::string>{path},
+                        words.how_to_install) {}
 
     /// Sets a pointer to a function of this library or of those it loads. Throws DeviceError if
     /// there is no function of this name.

@@ -76,7 +76,8 @@ struct Meter {
     Scene& scene;
     Pulse pulse{};
 
-    void turn(const char* what) {
+    /// The pictures while a hand moves something every 8 ms for so long [s].
+    void draw(const char* what, double time, const std::function<void()>& move) {
         std::vector<double> frames;
         QElapsedTimer since;
         since.start();
@@ -85,36 +86,29 @@ struct Meter {
             since.restart();
         });
         QTimer hand;
-        QObject::connect(&hand, &QTimer::timeout, [&] {
-            scene.set_camera(viewer::turned(scene.camera(), {1280, 800}, 3, 1));
-        });
+        QObject::connect(&hand, &QTimer::timeout, move);
         const double processor = processor_seconds();
         hand.start(8);
-        run_until([] { return false; }, 5);
+        run_until([] { return false; }, time);
         hand.stop();
         QObject::disconnect(swapped);
         if (!frames.empty()) frames.erase(frames.begin());
         print(what, frames, processor_seconds() - processor);
         pulse.report(what);
+    }
+    void turn(const char* what) {
+        draw(what, 5, [&] { scene.set_camera(viewer::turned(scene.camera(), {1280, 800}, 3, 1)); });
         rest(what);
     }
     /// The probe goes round, as snapshots of a session would show it.
     void probe(const Field& field) {
-        std::vector<double> frames;
-        QElapsedTimer since;
-        since.start();
-        const auto swapped = QObject::connect(&scene, &Scene::frameSwapped, [&] {
-            frames.push_back(seconds(since));
-            since.restart();
-        });
-        QTimer hand;
         Snapshot snapshot;
         snapshot.session.device.status = DeviceStatus::ready;
         const Vec3 middle = physical_centre(field.geometry());
         const double radius =
             0.2 *
             field.geometry().size.cast<double>().cwiseProduct(field.geometry().spacing).norm();
-        QObject::connect(&hand, &QTimer::timeout, [&] {
+        draw("probe", 4, [&] {
             const double angle = 0.02 * double(++snapshot.number);
             Tick& tick = snapshot.session.tick;
             tick.proxy.scp = middle + radius * Vec3(std::cos(angle), std::sin(angle), 0.5);
@@ -122,13 +116,6 @@ struct Meter {
             tick.force = (tick.proxy.scp - tick.proxy.hip).normalized();
             scene.show_snapshot(snapshot);
         });
-        const double processor = processor_seconds();
-        hand.start(8);
-        run_until([] { return false; }, 4);
-        hand.stop();
-        QObject::disconnect(swapped);
-        print("probe", frames, processor_seconds() - processor);
-        pulse.report("probe");
         scene.show_snapshot({});
     }
     void rest(const char* what) {

@@ -1,13 +1,10 @@
 // Finds and opens the device `falcon`: its options and errors.
 #include "devices/falcon/falcon.hpp"
 
-#include <cmath>
 #include <fstream>
 #include <iterator>
-#include <utility>
 
-#include "devices/falcon/words.hpp"
-#include "devices/left_alone.hpp"
+#include "devices/opening.hpp"
 
 namespace palpate::devices {
 namespace {
@@ -32,62 +29,24 @@ std::vector<unsigned char> firmware_from(const std::string& path) {
 }  // namespace
 
 DeviceFinding falcon::find(const std::string& library) {
-    DeviceFinding finding;
-    finding.name = "falcon";
-    finding.options = "index=0,firmware=PATH,library=libftdi1.so.2";
-    try {
-        const Ftdi ftdi(library);
-        const int count = ftdi.count();
-        finding.found = count > 0;
-        if (finding.found) {
-            finding.what = std::to_string(count) + (count == 1 ? " device; " : " devices; ") +
-                           ftdi.library.path();
-        } else {
-            finding.missing = "no device (" + ftdi.library.path() + "): " + how_to_attach;
-        }
-    } catch (const std::exception& error) {
-        finding.missing = error.what();
-    }
-    return finding;
-}
-
-DeviceFinding find_falcon() {
-    return falcon::find("");
-}
-
-std::unique_ptr<Device> open_falcon(const DeviceChoice& choice, const DeviceScene& scene) {
-    auto device = falcon::open(choice, scene);
-    device->start();
-    return device;
+    return finding_of(
+        "falcon", "index=0,firmware=PATH,library=" + words().usual, [&](DeviceFinding& finding) {
+            const Ftdi ftdi(library);
+            tell_count(finding, ftdi.count(), ftdi.library.path(), words().how_to_attach);
+        });
 }
 
 std::unique_ptr<falcon::FalconDevice> falcon::open(const DeviceChoice& choice,
                                                    const DeviceScene& scene, const Timing& timing) {
     DeviceOptions options(choice, "index");
-    const double index = options.number("index", 0, 0, 100);
-    if (index != std::floor(index)) {
-        throw std::invalid_argument("device " + choice.name + ": index=" + std::to_string(index) +
-                                    ": a whole number is needed");
-    }
+    Settings settings;
+    settings.index = static_cast<unsigned int>(options.whole_number("index", 0, 0, 100));
     const std::string firmware = options.text("firmware", "");
+    settings.rate = scene.rate;
     const std::string library = options.text("library", "");
     options.finish();
-    try {
-        const Ftdi ftdi =
-            left_alone_when_stopped(scene.progress, [library] { return Ftdi(library); });
-        const Settings settings{static_cast<unsigned int>(index), firmware_from(firmware),
-                                scene.rate};
-        Claim own = claim_for(settings);
-        const auto leaving = own.leaving();
-        return left_alone_when_stopped(
-            scene.progress,
-            [ftdi, claim = std::move(own), settings, timing]() mutable {
-                return std::make_unique<FalconDevice>(ftdi, std::move(claim), settings, timing);
-            },
-            leaving);
-    } catch (const DeviceError& error) {
-        throw DeviceError("device " + choice.name + ": " + error.what());
-    }
+    settings.firmware = with_name(choice, [&] { return firmware_from(firmware); });
+    return open_by_library<FalconDevice, Ftdi>(choice, scene, library, settings, timing);
 }
 
 }  // namespace palpate::devices

@@ -7,21 +7,15 @@
 #include "devices/falcon/falcon_device.hpp"
 #include "palpate/devices/backend.hpp"
 
-namespace palpate::devices {
+namespace palpate::devices::falcon {
 
-/// Looks for the library and counts the devices; opens none. Never throws for what it finds.
-DeviceFinding find_falcon();
-
-/// Opens a device and starts a thread of its own for it. Throws std::invalid_argument for wrong
-/// options, DeviceError where library, firmware or device cannot be had.
-std::unique_ptr<Device> open_falcon(const DeviceChoice& choice, const DeviceScene& scene);
-
-namespace falcon {
-/// As find_falcon(), in this library ("": where it usually is).
+/// Looks for the library ("": where it usually is) and counts the devices; opens none. Never throws
+/// for what it finds.
 DeviceFinding find(const std::string& library);
-/// As open_falcon(), without the thread.
+
+/// Opens a device, whose thread is not started. Throws std::invalid_argument for wrong options,
+/// DeviceError where library, firmware or device cannot be had.
 std::unique_ptr<FalconDevice> open(const DeviceChoice& choice, const DeviceScene& scene,
                                    const Timing& timing = {});
-}  // namespace falcon
 
-}  // namespace palpate::devices
+}  // namespace palpate::devices::falcon

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "devices/falcon/kinematics.hpp"
-#include "devices/falcon/words.hpp"
 #include "devices/models.hpp"
 
 namespace palpate::devices::falcon {
@@ -80,7 +79,7 @@ Claim claim_for(const Settings& settings) {
 }
 
 FalconDevice::FalconDevice(const Ftdi& ftdi, Claim claim, Settings settings, const Timing& timing)
-    : LinkedDevice(timing),
+    : LinkedDevice(timing, period),
       ftdi_(ftdi),
       settings_(std::move(settings)),
       claim_(std::move(claim)),
@@ -88,28 +87,22 @@ FalconDevice::FalconDevice(const Ftdi& ftdi, Claim claim, Settings settings, con
     const int count = ftdi_.count();
     if (count <= static_cast<int>(settings_.index)) {
         throw DeviceError("no device with index=" + std::to_string(settings_.index) + " (" +
-                          std::to_string(std::max(0, count)) + " found): " + how_to_attach);
+                          std::to_string(std::max(0, count)) + " found): " + words().how_to_attach);
     }
     try {
         port_.emplace(ftdi_, settings_.index);
     } catch (const PortError& error) {
         throw DeviceError(std::string(error.what()) + ": does another program use it? " +
-                          how_to_attach);
+                          words().how_to_attach);
     }
 }
 
 FalconDevice::~FalconDevice() {
-    link_.stop();
-    quit_.store(true);
-    if (thread_.joinable()) thread_.join();
+    end_thread();
     try {
         if (port_ && is_awake_) port_->exchange({}, waits);
     } catch (const PortError&) {  // it is gone
     }
-}
-
-void FalconDevice::start() {
-    thread_ = std::thread([this] { keep_stepping(period, timing_, quit_, [this] { step(); }); });
 }
 
 void FalconDevice::step() noexcept {
@@ -155,7 +148,7 @@ void FalconDevice::wake(std::int64_t now) {
     };
     if (answers()) return;
     std::string wrong;
-    for (int i = 0; i < most_loads && !settings_.firmware.empty() && !quit_; ++i) {
+    for (int i = 0; i < most_loads && !settings_.firmware.empty() && !is_ending(); ++i) {
         wrong = port_->load(settings_.firmware);
         if (wrong.empty() && answers()) return;
         if (wrong.empty()) wrong = "it was loaded, but does not answer";

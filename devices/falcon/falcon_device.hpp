@@ -2,11 +2,9 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <thread>
 #include <vector>
 
 #include "devices/claim.hpp"
@@ -55,11 +53,9 @@ class FalconDevice final : public LinkedDevice {
     /// Ends the thread. The last packet asks for no force.
     ~FalconDevice() override;
 
-    /// Starts a thread that steps a thousand times a second.
-    void start();
-    /// One packet out and one in. Without a device or without its firmware sometimes an attempt to
-    /// open it or to load, which takes seconds.
-    void step() noexcept;
+    /// One packet out and one in, a thousand times a second. Without a device or without its
+    /// firmware sometimes an attempt to open it or to load, which takes seconds.
+    void step() noexcept override;
 
     DeviceInfo info() const override { return info_; }
     std::string problem() const override;
@@ -77,7 +73,6 @@ class FalconDevice final : public LinkedDevice {
     const Claim claim_;
     const DeviceInfo info_;
     LatestTrouble<Trouble> trouble_;
-    std::atomic<bool> quit_{false};
 
     // Used by the thread only.
     std::optional<Port> port_;
@@ -88,8 +83,6 @@ class FalconDevice final : public LinkedDevice {
     int unanswered_ = 0;             // packets, in a row
     std::optional<Vec3> position_;   // [m] of the grip, in the legs' frame
     std::int64_t next_attempt_ = 0;  // [ns] to open or wake it, not before
-
-    std::thread thread_;
 };
 
 }  // namespace palpate::devices::falcon

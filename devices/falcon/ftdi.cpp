@@ -2,12 +2,10 @@
 #include "devices/falcon/ftdi.hpp"
 
 #include "devices/falcon/port.hpp"
-#include "devices/falcon/words.hpp"
 
 namespace palpate::devices::falcon {
 
-Ftdi::Ftdi(const std::string& path)
-    : library(path.empty() ? library_names() : std::vector<std::string>{path}, how_to_install) {
+Ftdi::Ftdi(const std::string& path) : library(path, words()) {
     library.need(make, "ftdi_new");
     library.need(free, "ftdi_free");
     library.need(find_all, "ftdi_usb_find_all");

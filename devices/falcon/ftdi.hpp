@@ -15,6 +15,8 @@ constexpr int one_stop_bit = 0;     // STOP_BIT_1
 constexpr int no_parity = 0;        // NONE
 constexpr int no_flow_control = 0;  // SIO_DISABLE_FLOW_CTRL
 
+VendorWords words();
+
 /// The functions. Negative results are errors, which error_text() explains. Reading returns what
 /// has arrived, after one latency time at most if that is nothing.
 struct Ftdi {

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <iterator>
 
-#include "devices/forcedimension/words.hpp"
-
 namespace palpate::devices::forcedimension {
 namespace {
 
@@ -62,8 +60,7 @@ Arm arm_of(const Dhd& dhd, char id) {
     return arm;
 }
 
-Dhd::Dhd(const std::string& path)
-    : library(path.empty() ? library_names() : std::vector<std::string>{path}, how_to_install) {
+Dhd::Dhd(const std::string& path) : library(path, words()) {
     library.need(get_device_count, "dhdGetDeviceCount");
     library.need(dhd_open, "dhdOpenID");
     library.need(dhd_close, "dhdClose");

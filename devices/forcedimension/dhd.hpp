@@ -37,6 +37,8 @@ enum class ForceOff : int {
     deadman = 6,   // DHD_FORCE_OFF_DEADMAN
 };
 
+VendorWords words();
+
 /// The functions. Negative results are errors. Positive
 /// ones are not: they report the time guard (1) or a motor at its limit (2).
 struct Dhd {

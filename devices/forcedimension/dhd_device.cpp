@@ -113,7 +113,7 @@ Opened::~Opened() {
 }
 
 DhdDevice::DhdDevice(const Dhd& dhd, Claim claim, const Settings& settings, const Timing& timing)
-    : LinkedDevice(timing),
+    : LinkedDevice(timing, period),
       dhd_(dhd),
       opened_(dhd_, std::move(claim), settings),
       id_(opened_.id()),
@@ -144,18 +144,12 @@ DhdDevice::DhdDevice(const Dhd& dhd, Claim claim, const Settings& settings, cons
 }
 
 DhdDevice::~DhdDevice() {
-    link_.stop();
-    quit_.store(true);
-    if (thread_.joinable()) thread_.join();
+    end_thread();
     send({}, 0);
     if (emulates_button_) dhd_.emulate_button(0, id_);
     if (!old_watchdog_) return;
     const ExpertMode expert(dhd_);
     dhd_.set_watchdog(*old_watchdog_, id_);
-}
-
-void DhdDevice::start() {
-    thread_ = std::thread([this] { keep_stepping(period, timing_, quit_, [this] { step(); }); });
 }
 
 DeviceInfo DhdDevice::ask(const Settings& settings) const {

@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <thread>
 
 #include "devices/claim.hpp"
 #include "devices/forcedimension/dhd.hpp"
@@ -70,11 +69,9 @@ class DhdDevice final : public LinkedDevice {
     /// Ends the thread. The last force is zero.
     ~DhdDevice() override;
 
-    /// Starts a thread that steps up to 4000 times a second.
-    void start();
-    /// One exchange with the device: a reading in, a force out. The first one initialises it where
-    /// the settings ask for it.
-    void step() noexcept;
+    /// A reading in and a force out, up to 4000 times a second. The first step initialises the
+    /// device where the settings ask for it.
+    void step() noexcept override;
 
     DeviceInfo info() const override { return info_; }
     std::string problem() const override;
@@ -105,7 +102,6 @@ class DhdDevice final : public LinkedDevice {
     const DeviceInfo info_;
     const double spring_;  // [N]
     LatestTrouble<Trouble> trouble_;
-    std::atomic<bool> quit_{false};
     std::atomic<bool> has_watchdog_{false};  // the device drops a force that is not renewed
 
     // Used by the thread only.
@@ -117,8 +113,6 @@ class DhdDevice final : public LinkedDevice {
     bool is_to_centre_;           // once it is on
     std::int64_t next_look_ = 0;  // [ns]
     std::optional<unsigned char> old_watchdog_;
-
-    std::thread thread_;
 };
 
 }  // namespace palpate::devices::forcedimension

@@ -8,21 +8,15 @@
 #include "devices/forcedimension/dhd_device.hpp"
 #include "palpate/devices/backend.hpp"
 
-namespace palpate::devices {
+namespace palpate::devices::forcedimension {
 
-/// Looks for the library and counts the devices; opens none. Never throws for what it finds.
-DeviceFinding find_forcedimension();
-
-/// Opens a device and starts a thread of its own for it. Throws std::invalid_argument for wrong
-/// options, DeviceError where library or device cannot be had.
-std::unique_ptr<Device> open_forcedimension(const DeviceChoice& choice, const DeviceScene& scene);
-
-namespace forcedimension {
-/// As find_forcedimension(), in this library ("": where it usually is).
+/// Looks for the library ("": where it usually is) and counts the devices; opens none. Never throws
+/// for what it finds.
 DeviceFinding find(const std::string& library);
-/// As open_forcedimension(), without the thread.
+
+/// Opens a device, whose thread is not started. Throws std::invalid_argument for wrong options,
+/// DeviceError where library or device cannot be had.
 std::unique_ptr<DhdDevice> open(const DeviceChoice& choice, const DeviceScene& scene,
                                 const Timing& timing = {});
-}  // namespace forcedimension
 
-}  // namespace palpate::devices
+}  // namespace palpate::devices::forcedimension

@@ -1,12 +1,11 @@
 // Finds and opens the device `haply`: its options and errors.
 #include "devices/haply/haply.hpp"
 
-#include <cmath>
 #include <cstdlib>
 #include <utility>
 
 #include "devices/haply/inverse3.hpp"
-#include "devices/left_alone.hpp"
+#include "devices/opening.hpp"
 #include "io/system/number.hpp"
 
 namespace palpate::devices {
@@ -19,21 +18,13 @@ std::string usual_host() {
     return host && *host ? host : "127.0.0.1";  // not a name: it is found without a resolver
 }
 
-double usual_port() {
+std::uint16_t usual_port() {
     const char* given = std::getenv("HAPLY_WS_PORT");
     if (!given || !*given) return 10001;
     const auto port = io::number_from<int>(given);
-    if (port && *port >= 1 && *port <= 65535) return *port;
+    if (port && *port >= 1 && *port <= 65535) return static_cast<std::uint16_t>(*port);
     throw std::invalid_argument("device haply: HAPLY_WS_PORT=" + std::string(given) +
                                 ": a number from 1 to 65535 is needed");
-}
-
-haply::Address address_from(const std::string& host, double port) {
-    if (port != std::floor(port)) {
-        throw std::invalid_argument("device haply: port=" + std::to_string(port) +
-                                    ": a whole number is needed");
-    }
-    return haply::look_up(host, static_cast<std::uint16_t>(port));
 }
 
 /// A conversation with the service that has begun, or why not.
@@ -44,9 +35,9 @@ struct Begun {
 };
 
 /// Throws DeviceError if there is no such host.
-Begun begin_talk(haply::Talk talk, const std::string& host, double port, const std::string& device,
-                 const Timing& timing) {
-    Begun begun{address_from(host, port), std::move(talk)};
+Begun begin_talk(haply::Talk talk, const std::string& host, std::uint16_t port,
+                 const std::string& device, const Timing& timing) {
+    Begun begun{haply::look_up(host, port), std::move(talk)};
     if (begun.address.numeric.empty()) {
         throw DeviceError("device haply: no host '" + host +
                           "': host=NAME is where Haply's Inverse Service runs, usually 127.0.0.1");
@@ -68,46 +59,33 @@ Begun begin_talk(haply::Talk talk, const std::string& host, double port, const s
 
 }  // namespace
 
-DeviceFinding find_haply() {
-    return haply::find({});
-}
-
 DeviceFinding haply::find(Talk talk, const Timing& timing) {
-    DeviceFinding finding;
-    finding.name = "haply";
-    finding.options =
+    return finding_of(
+        "haply",
         "host=127.0.0.1,port=10001,device=ID (the first),force_key=auto (auto|values|vector),"
         "preset=defaults,axes=xz-y,"
-        "calibrated=ask (ask|assume),timeout=2";
-    try {
-        const Address address = address_from(usual_host(), usual_port());
-        finding.missing = start_talk(talk, address, "", time_of(timing) + 2s);
-        if (!finding.missing.empty()) return finding;
-        finding.found = !talk.state.device_id.empty();
-        const std::string place = address.host + ":" + std::to_string(address.port);
-        if (finding.found) {
-            finding.what = talk.state.model + ", Inverse Service at " + place;
-        } else {
-            finding.missing = no_device(talk, address);
-        }
-        talk.channel->close(time_of(timing) + 50ms);
-    } catch (const std::exception& error) {
-        finding.missing = error.what();
-    }
-    return finding;
-}
-
-std::unique_ptr<Device> open_haply(const DeviceChoice& choice, const DeviceScene& scene) {
-    auto inverse3 = haply::open(choice, scene);
-    inverse3->start();
-    return inverse3;
+        "calibrated=ask (ask|assume),timeout=2",
+        [&](DeviceFinding& finding) {
+            const Address address = look_up(usual_host(), usual_port());
+            finding.missing = start_talk(talk, address, "", time_of(timing) + 2s);
+            if (!finding.missing.empty()) return;
+            finding.found = !talk.state.device_id.empty();
+            const std::string place = address.host + ":" + std::to_string(address.port);
+            if (finding.found) {
+                finding.what = talk.state.model + ", Inverse Service at " + place;
+            } else {
+                finding.missing = no_device(talk, address);
+            }
+            talk.channel->close(time_of(timing) + 50ms);
+        });
 }
 
 std::unique_ptr<haply::Inverse3> haply::open(const DeviceChoice& choice, const DeviceScene& scene,
                                              Talk talk, const Timing& timing) {
     DeviceOptions options(choice, "host");
     const std::string host = options.text("host", usual_host());
-    const double port = options.number("port", usual_port(), 1, 65535);
+    const auto port =
+        static_cast<std::uint16_t>(options.whole_number("port", usual_port(), 1, 65535));
     Settings settings;
     settings.device = options.text("device", "");
     const std::string key = options.one_of("force_key", "auto", {"auto", "values", "vector"});

@@ -104,7 +104,7 @@ Clock::duration Questions::behind(Clock::time_point now) const {
 }
 
 Inverse3::Inverse3(Settings settings, Address address, Talk talk, const Timing& timing)
-    : LinkedDevice(timing),
+    : LinkedDevice(timing, 0),
       settings_(settled(std::move(settings), talk.state)),
       address_(std::move(address)),
       service_(service_at(address_)),
@@ -123,17 +123,11 @@ const Model& Inverse3::model() const {
 }
 
 Inverse3::~Inverse3() {
-    link_.stop();
-    quit_.store(true);
-    if (thread_.joinable()) thread_.join();
+    end_thread();
     try {
         say_goodbye();
     } catch (const std::exception&) {  // no memory: the service ends the force by itself
     }
-}
-
-void Inverse3::start() {
-    thread_ = std::thread([this] { run(); });
 }
 
 DeviceInfo Inverse3::info() const {
@@ -172,11 +166,6 @@ void Inverse3::tell(std::string_view problem) {
 void Inverse3::tell_identity(const ServiceState& state) {
     told_grip_ = !state.grip.list.empty();
     identity_.put({clipped<sizeof(Identity::model)>(state.model), told_grip_});
-}
-
-void Inverse3::run() {
-    prepare_device_thread();
-    while (!quit_) step();
 }
 
 void Inverse3::step() {

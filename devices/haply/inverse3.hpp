@@ -2,12 +2,10 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 
 #include "devices/claim.hpp"
 #include "devices/haply/protocol.hpp"
@@ -73,18 +71,16 @@ class Inverse3 final : public LinkedDevice {
     /// Ends the thread, sends zero force and says goodbye: at most about 0.2 s.
     ~Inverse3() override;
 
-    /// Starts a thread that steps.
-    void start();
     /// One question, or one wait of at most 10 ms; without a connection sometimes an attempt to
     /// connect, of at most 250 ms.
-    void step();
+    void step() override;
 
     DeviceInfo info() const override;
     std::string problem() const override;
 
   private:
     // Called by the thread only.
-    void run();
+    void wait() override {}  // a step does
     void reconnect();
     std::optional<std::string> converse();
     bool ask(Clock::time_point now);
@@ -117,7 +113,6 @@ class Inverse3 final : public LinkedDevice {
     const bool is_minverse_;
     Newest<Problem> problem_;
     Newest<Identity> identity_;
-    std::atomic<bool> quit_{false};
 
     // Used by the thread only.
     Talk talk_;
@@ -143,8 +138,6 @@ class Inverse3 final : public LinkedDevice {
     ForceGate gate_;
     Clock::duration wait_;            // before the next attempt to connect
     Clock::time_point next_attempt_;  // not before
-
-    std::thread thread_;
 };
 
 }  // namespace palpate::devices::haply

@@ -4,12 +4,9 @@
 #include <array>
 #include <cstdio>
 
-#include "devices/openhaptics/words.hpp"
-
 namespace palpate::devices::openhaptics {
 
-Hd::Hd(const std::string& path)
-    : library(path.empty() ? library_names() : std::vector<std::string>{path}, how_to_install) {
+Hd::Hd(const std::string& path) : library(path, words()) {
     library.need(init_device, "hdInitDevice");
     library.need(disable_device, "hdDisableDevice");
     library.need(make_current, "hdMakeCurrentDevice");

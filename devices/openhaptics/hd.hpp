@@ -80,6 +80,8 @@ enum CalibrationStyle : unsigned int {
     inkwell = 4,        // HD_CALIBRATION_INKWELL
 };
 
+VendorWords words();
+
 /// The functions. All but error_words() need the device to be the current one.
 struct Hd {
     /// Opens `path`; if that is empty, libHD.so where the loader finds it. Throws DeviceError.

@@ -5,25 +5,18 @@
 #include <memory>
 #include <string>
 
-#include "devices/link.hpp"
+#include "devices/openhaptics/phantom.hpp"
 #include "palpate/devices/backend.hpp"
 
-namespace palpate::devices {
+namespace palpate::devices::openhaptics {
 
-/// Looks for the library, not for a device: asking the driver for one could disturb a session that
-/// another program has with it. Never throws for what it finds.
-DeviceFinding find_openhaptics();
+/// Looks for the library ("": where it usually is), not for a device: asking the driver for one
+/// could disturb a session that another program has with it. Never throws for what it finds.
+DeviceFinding find(const std::string& library);
 
 /// Opens the device and starts the driver's servo loop. Throws std::invalid_argument for wrong
 /// options, DeviceError where library or device cannot be had.
-std::unique_ptr<Device> open_openhaptics(const DeviceChoice& choice, const DeviceScene& scene);
+std::unique_ptr<Phantom> open(const DeviceChoice& choice, const DeviceScene& scene,
+                              const Timing& timing = {});
 
-namespace openhaptics {
-/// As find_openhaptics(), in this library ("": where it usually is).
-DeviceFinding find(const std::string& library);
-/// As open_openhaptics(), with a time of the caller's.
-std::unique_ptr<Device> open(const DeviceChoice& choice, const DeviceScene& scene,
-                             const Timing& timing);
-}  // namespace openhaptics
-
-}  // namespace palpate::devices
+}  // namespace palpate::devices::openhaptics

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "devices/models.hpp"
-#include "devices/openhaptics/words.hpp"
 
 namespace palpate::devices::openhaptics {
 namespace {
@@ -112,12 +111,12 @@ const char* advice(unsigned int code) {
 
 }  // namespace
 
-Claim claim_for_all() {
+Claim claim_for(const Settings&) {
     return Claim("the only device that the driver opens per process");
 }
 
-Attachment::Attachment(Claim claim, const std::string& library, const std::string& name)
-    : claim_(std::move(claim)), hd_(std::make_shared<const Hd>(library)) {
+Attachment::Attachment(const Hd& hd, Claim claim, const std::string& name)
+    : claim_(std::move(claim)), hd_(std::make_shared<const Hd>(hd)) {
     std::vector<const char*> names{name.c_str()};
     if (name.empty()) names = {nullptr, "Default Device", "Default PHANToM"};
     std::string tried;
@@ -132,7 +131,7 @@ Attachment::Attachment(Claim claim, const std::string& library, const std::strin
                  (code ? hd_->error_words(code) : "no error told");
         if (code == error::invalid_license) tried += std::string(": ") + advice(code);
     }
-    throw DeviceError("the driver gives no device (" + tried + "): " + how_to_attach);
+    throw DeviceError("the driver gives no device (" + tried + "): " + words().how_to_attach);
 }
 
 Attachment::~Attachment() {
@@ -142,11 +141,10 @@ Attachment::~Attachment() {
     hd_->take_error();
 }
 
-Phantom::Phantom(std::unique_ptr<Attachment> attachment, const Settings& settings,
-                 const Timing& timing)
-    : timing_(timing), attachment_(std::move(attachment)) {
-    const Hd& hd = attachment_->hd();
-    hd.make_current(attachment_->device());
+Phantom::Phantom(const Hd& library, Claim claim, const Settings& settings, const Timing& timing)
+    : timing_(timing), attachment_(library, std::move(claim), settings.name) {
+    const Hd& hd = attachment_.hd();
+    hd.make_current(attachment_.device());
     check("hdMakeCurrentDevice");
     info_ = ask(hd, settings.rate);
     styles_ = static_cast<unsigned int>(whole_number(hd, parameter::calibration_style, 0, 7, 0));
@@ -158,8 +156,8 @@ Phantom::Phantom(std::unique_ptr<Attachment> attachment, const Settings& setting
         check("zeroing the encoders");
     }
     frames_ = std::make_shared<Frames>(
-        attachment_->shared_hd(),
-        Frames::Setup{attachment_->device(), info_.limits.maximum_force,
+        attachment_.shared_hd(),
+        Frames::Setup{attachment_.device(), info_.limits.maximum_force,
                       info_.limits.continuous_force, info_.limits.maximum_torque,
                       info_.has_orientation, styles_, timing_.now});
     kept_.push_back(frames_);
@@ -177,7 +175,7 @@ Phantom::~Phantom() {
 }
 
 void Phantom::start() {
-    const Hd& hd = attachment_->hd();
+    const Hd& hd = attachment_.hd();
     hd.enable(force_output);
     check("switching on its force");
     scheduled_ = hd.schedule(&Frames::callback, frames_.get(), highest_priority);
@@ -189,7 +187,7 @@ void Phantom::start() {
 
 void Phantom::end_loop() noexcept {
     if (!is_scheduled_) return;
-    const Hd& hd = attachment_->hd();
+    const Hd& hd = attachment_.hd();
     frames_->link().stop();
     frames_->end();
     const std::int64_t until = timing_.now() + longest_wait;
@@ -204,7 +202,7 @@ void Phantom::end_loop() noexcept {
 }
 
 void Phantom::check(const char* step) const {
-    const Hd& hd = attachment_->hd();
+    const Hd& hd = attachment_.hd();
     const unsigned int code = hd.take_error();
     if (code) throw DeviceError(std::string(step) + ": the driver says " + hd.error_words(code));
 }
@@ -229,7 +227,7 @@ std::string Phantom::calibration_words(Trouble::Kind kind) const {
 std::string Phantom::problem() const {
     const Trouble trouble = frames_->trouble();
     const auto driver_says = [&](const char* do_this) {
-        return "the driver reports " + attachment_->hd().error_words(trouble.code) + ": " + do_this;
+        return "the driver reports " + attachment_.hd().error_words(trouble.code) + ": " + do_this;
     };
     switch (trouble.kind) {
         case Trouble::Kind::needs_update:

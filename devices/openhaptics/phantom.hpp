@@ -17,12 +17,12 @@ struct Settings {
 };
 
 /// Of the one device. The driver has one servo loop and one current device per process.
-Claim claim_for_all();
+Claim claim_for(const Settings& settings);
 
 /// Opens a device of the driver and closes it when destroyed. Throws DeviceError.
 class Attachment {
   public:
-    Attachment(Claim claim, const std::string& library, const std::string& name);
+    Attachment(const Hd& hd, Claim claim, const std::string& name);
     ~Attachment();
     Attachment(const Attachment&) = delete;
     Attachment& operator=(const Attachment&) = delete;
@@ -41,8 +41,7 @@ class Attachment {
 class Phantom final : public Device {
   public:
     /// Starts the driver's servo loop. Throws DeviceError.
-    Phantom(std::unique_ptr<Attachment> attachment, const Settings& settings,
-            const Timing& timing = {});
+    Phantom(const Hd& library, Claim claim, const Settings& settings, const Timing& timing = {});
     ~Phantom() override;
 
     DeviceInfo info() const override { return info_; }
@@ -61,7 +60,7 @@ class Phantom final : public Device {
     std::string calibration_words(Trouble::Kind kind) const;
 
     const Timing timing_;
-    std::unique_ptr<Attachment> attachment_;
+    const Attachment attachment_;
     DeviceInfo info_;
     unsigned int styles_ = 0;  // of calibration
     std::shared_ptr<Frames> frames_;

@@ -32,7 +32,7 @@ struct HandOptions {
     double seconds = 30;
     double speed = 50;
     double depth = 4;
-    double seed = 1;
+    int seed = 1;
     bool loop = false;
 };
 
@@ -123,10 +123,7 @@ Choice choose(const DeviceChoice& given) {
     hand.seconds = options.number("seconds", hand.seconds, 0.5, 3600);
     hand.speed = options.number("speed", hand.speed, 1, 1000);
     hand.depth = options.number("depth", hand.depth, 0, 50);
-    hand.seed = options.number("seed", hand.seed, 0, 1e9);
-    if (hand.seed != std::floor(hand.seed)) {
-        throw std::invalid_argument("device " + given.name + ": seed= needs a whole number");
-    }
+    hand.seed = options.whole_number("seed", hand.seed, 0, 1'000'000'000);
     options.finish();
     return choice;
 }

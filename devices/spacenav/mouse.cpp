@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <exception>
 #include <utility>
 
 #include "palpate/devices/error.hpp"
@@ -12,7 +11,6 @@
 namespace palpate::devices::spacenav {
 namespace {
 
-constexpr std::int64_t period = 1'000'000;         // [ns]
 constexpr std::int64_t longest_step = 20'000'000;  // [ns] no jump after the machine has stalled
 constexpr std::int64_t between_attempts = 250'000'000;  // [ns] to connect again
 constexpr std::size_t most_at_once = 4096;              // [bytes]
@@ -35,7 +33,7 @@ std::string connect_to_any(Socket& socket, const std::vector<std::string>& paths
 
 Mouse::Mouse(Socket socket, const std::string& path, std::vector<std::string> paths,
              const Feel& feel, double rate, const Timing& timing)
-    : timing_(timing),
+    : LinkedDevice(timing, period),
       paths_(std::move(paths)),
       feel_(feel),
       socket_(std::move(socket)),
@@ -53,12 +51,7 @@ Mouse::Mouse(Socket socket, const std::string& path, std::vector<std::string> pa
 }
 
 Mouse::~Mouse() {
-    quit_.store(true);
-    if (thread_.joinable()) thread_.join();
-}
-
-void Mouse::start() {
-    thread_ = std::thread([this] { run(); });
+    end_thread();
 }
 
 std::string Mouse::problem() const {
@@ -66,16 +59,6 @@ std::string Mouse::problem() const {
     if (connected_) return {};
     return "spacenavd has closed the connection; trying to connect again: is it running (systemctl "
            "status spacenavd)?";
-}
-
-void Mouse::run() {
-    while (!quit_) {
-        socket_.wait_until(timing_.now() + period);
-        try {
-            step();
-        } catch (const std::exception&) {  // no memory: perhaps later
-        }
-    }
 }
 
 void Mouse::step() {

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "devices/opening.hpp"
 #include "devices/spacenav/mouse.hpp"
 
 namespace palpate::devices {
@@ -22,24 +23,14 @@ std::vector<std::string> paths_from(const std::string& asked) {
 
 }  // namespace
 
-DeviceFinding find_spacenav() {
-    DeviceFinding finding;
-    finding.name = "spacenav";
-    finding.options = "socket=/var/run/spnav.sock,speed=100 [mm/s],turn=90 [degrees/s],full=350";
-    try {
-        spacenav::Socket socket;
-        finding.what = "spacenavd at " + connect_to_any(socket, paths_from(""));
-        finding.found = true;
-    } catch (const std::exception& error) {
-        finding.missing = error.what();
-    }
-    return finding;
-}
-
-std::unique_ptr<Device> open_spacenav(const DeviceChoice& choice, const DeviceScene& scene) {
-    auto mouse = spacenav::open(choice, scene);
-    mouse->start();
-    return mouse;
+DeviceFinding spacenav::find() {
+    return finding_of("spacenav",
+                      "socket=/var/run/spnav.sock,speed=100 [mm/s],turn=90 [degrees/s],full=350",
+                      [](DeviceFinding& finding) {
+                          Socket socket;
+                          finding.what = "spacenavd at " + connect_to_any(socket, paths_from(""));
+                          finding.found = true;
+                      });
 }
 
 std::unique_ptr<spacenav::Mouse> spacenav::open(const DeviceChoice& choice,
@@ -51,15 +42,13 @@ std::unique_ptr<spacenav::Mouse> spacenav::open(const DeviceChoice& choice,
     feel.turn = options.number("turn", feel.turn, 0, 360);
     feel.deflection = options.number("full", feel.deflection, 1, 10000);
     options.finish();
-    try {
+    return with_name(choice, [&] {
         std::vector<std::string> paths = paths_from(asked);
         Socket socket;
         const std::string path = connect_to_any(socket, paths);
         return std::make_unique<Mouse>(std::move(socket), path, std::move(paths), feel, scene.rate,
                                        timing);
-    } catch (const DeviceError& error) {
-        throw DeviceError("device " + choice.name + ": " + error.what());
-    }
+    });
 }
 
 }  // namespace palpate::devices

@@ -7,19 +7,14 @@
 #include "devices/spacenav/mouse.hpp"
 #include "palpate/devices/backend.hpp"
 
-namespace palpate::devices {
+namespace palpate::devices::spacenav {
 
 /// Tries to connect to the daemon. Never throws for what it finds.
-DeviceFinding find_spacenav();
+DeviceFinding find();
 
-/// Connects, and connects again when the connection is lost later. Throws std::invalid_argument for
-/// wrong options, DeviceError if no daemon listens.
-std::unique_ptr<Device> open_spacenav(const DeviceChoice& choice, const DeviceScene& scene);
-
-namespace spacenav {
-/// As open_spacenav(), without the thread.
+/// Connects, and connects again when the connection is lost later. The thread is not started.
+/// Throws std::invalid_argument for wrong options, DeviceError if no daemon listens.
 std::unique_ptr<Mouse> open(const DeviceChoice& choice, const DeviceScene& scene,
                             const Timing& timing = {});
-}  // namespace spacenav
 
-}  // namespace palpate::devices
+}  // namespace palpate::devices::spacenav

@@ -33,14 +33,14 @@ std::string ask_for_memory() {
 }  // namespace
 
 int take_priority(int priority) noexcept {
+    // 1 ns for threads without SCHED_FIFO: by default they may be woken 50 us late to save power.
+    prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
     sched_param parameter{};
     parameter.sched_priority = priority;
     return pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter);
 }
 
 std::vector<std::string> ask_for_real_time(int priority) {
-    // 1 ns for threads without SCHED_FIFO: by default they may be woken 50 us late to save power.
-    prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
     touch_stack();
     return {ask_for_priority(priority), ask_for_memory()};
 }

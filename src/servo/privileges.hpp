@@ -8,12 +8,13 @@
 
 namespace palpate {
 
-/// Asks, for the calling thread, for SCHED_FIFO, for memory that stays in place and for exact
-/// timers. A sentence for each: what was granted, or what was not and what to set.
-std::vector<std::string> ask_for_real_time(int priority);
-
-/// Asks, for the calling thread, for SCHED_FIFO; 0 if it was granted, otherwise the error number.
+/// Asks, for the calling thread, for exact timers and for SCHED_FIFO; 0 if that was granted,
+/// otherwise the error number. The devices' threads use it, too.
 int take_priority(int priority) noexcept;
+
+/// The same, and for memory that stays in place. A sentence for each: what was granted, or what was
+/// not and what to set.
+std::vector<std::string> ask_for_real_time(int priority);
 
 /// Touches the stack as deep as a tick may reach, so that no page of it faults later.
 inline void touch_stack() {

@@ -9,8 +9,8 @@
 #include "support/constants.hpp"
 #include "support/edits.hpp"
 #include "support/hand.hpp"
+#include "support/layer.hpp"
 #include "support/layer_order.hpp"
-#include "support/press.hpp"
 #include "support/scripted_device.hpp"
 
 using namespace palpate;
@@ -19,34 +19,9 @@ using enum HapticProperty;
 
 namespace {
 
-Layers surfaces(std::vector<double> levels, double k, double force) {
-    Layers layers;
-    for (const double level : levels) {
-        Layer one;
-        one.name = "at " + std::to_string(level);
-        one.level = level;
-        one[stiffness] = k;
-        one[puncture_force] = force;
-        layers.layers.push_back(one);
-    }
-    return layers;
+RenderedHand on_ramp(const Layers& layers) {
+    return {renderer_of(ramp_field(), layers)};
 }
-
-struct Ramp {
-    Renderer renderer;
-    double time = 0;
-
-    explicit Ramp(const Layers& layers) : renderer(made(layers)) {}
-    static Renderer made(const Layers& layers) {
-        RendererSettings settings = at_once();
-        settings.layers = std::make_shared<Layers>(layers);
-        settings.force.limit = settings.device.maximum_force = 100;
-        return make_renderer(ramp_field(), layers.layers.front().level, settings);
-    }
-    Tick to(const Vec3& position) {
-        return render(renderer, {.time = time += 0.001, .position = position});
-    }
-};
 
 /// Layers of an 8 bit field, at random: more or fewer, holding or giving way, with needles.
 std::shared_ptr<const Layers> random_layers(Random& random, double sign) {
@@ -203,13 +178,13 @@ struct Turmoil {
 }  // namespace
 
 TEST(LayersChanges, leave_a_contact_alone_where_input_is_no_position) {
-    Layers layers = surfaces({20, 40}, 0.5, 2);
+    Layers layers = surfaces_at({20, 40}, 0.5, 2);
     layers.layers[1][stiffness] = 1.5;
-    Ramp one(layers);
+    RenderedHand one = on_ramp(layers);
     for (double z = 15; z < 30; z += 0.1) one.to(at_depth(z));
     for (double z = 30; z > 17; z -= 0.1) one.to(at_depth(z));
     EXPECT_EQ(one.to(at_depth(17)).layers.touched, 0) << "from inside";
-    Ramp other = one;
+    RenderedHand other = one;
     for (const double broken : {not_a_number, infinity, 1e30}) {
         const Tick tick = other.to({4, 4, broken});
         EXPECT_EQ(tick.proxy.status, UpdateStatus::refused);
@@ -227,9 +202,9 @@ TEST(LayersChanges, leave_a_contact_alone_where_input_is_no_position) {
 }
 
 TEST(LayersChanges, surfaces_without_stiffness_and_force_are_passed_like_air) {
-    Layers layers = surfaces({20, 21, 30}, 0.5, 0.4);
+    Layers layers = surfaces_at({20, 21, 30}, 0.5, 0.4);
     layers.layers[0][stiffness] = layers.layers[0][puncture_force] = 0;
-    Ramp fast(layers);
+    RenderedHand fast = on_ramp(layers);
     fast.to(at_depth(19));
     const Tick tick = fast.to(at_depth(21.5));
     EXPECT_EQ(tick.layers.punctured, 1);
@@ -261,12 +236,12 @@ TEST(LayersChanges, a_tick_has_one_budget_however_many_surfaces_give_way) {
 }
 
 TEST(LayersChanges, other_layers_without_a_needle_take_it_out) {
-    Layers layers = surfaces({20, 40}, 0.5, 0.5);
+    Layers layers = surfaces_at({20, 40}, 0.5, 0.5);
     layers.needle = Needle{};
-    Ramp one(layers);
+    RenderedHand one = on_ramp(layers);
     for (double z = 15; z < 30; z += 0.1) one.to(at_depth(z));
     EXPECT_TRUE(one.renderer.layers.needle.inserted);
-    one.renderer.settings.layers = std::make_shared<Layers>(surfaces({20, 40}, 0.5, 0.5));
+    one.renderer.settings.layers = std::make_shared<Layers>(surfaces_at({20, 40}, 0.5, 0.5));
     const Tick tick = one.to(at_depth(30) + Vec3(0.5, 0, 0));
     EXPECT_FALSE(one.renderer.layers.needle.inserted);
     EXPECT_EQ(tick.proxy.scp, tick.proxy.hip);
@@ -274,10 +249,10 @@ TEST(LayersChanges, other_layers_without_a_needle_take_it_out) {
 }
 
 TEST(LayersChanges, moved_levels_push_the_proxy_like_an_isovalue) {
-    Ramp one(surfaces({20, 40}, 0.5, 5));
+    RenderedHand one = on_ramp(surfaces_at({20, 40}, 0.5, 5));
     one.to(at_depth(19));
     for (const double level : {18.0, 10.0, 25.0}) {
-        const auto moved = std::make_shared<Layers>(surfaces({level, 40}, 0.5, 5));
+        const auto moved = std::make_shared<Layers>(surfaces_at({level, 40}, 0.5, 5));
         ASSERT_TRUE(keep_for(one.renderer.layers, moved));
         one.renderer.settings.layers = moved;
         const Tick tick = one.to(at_depth(19));
@@ -288,7 +263,7 @@ TEST(LayersChanges, moved_levels_push_the_proxy_like_an_isovalue) {
 
 TEST(LayersChanges, a_hand_that_starts_inside_is_felt_from_outside) {
     for (const double depth : {25.0, 55.0}) {
-        Ramp one(surfaces({20, 40, 60}, 0.5, infinity));
+        RenderedHand one = on_ramp(surfaces_at({20, 40, 60}, 0.5, infinity));
         Tick tick;
         for (int i = 0; i < 20; ++i) tick = one.to(at_depth(depth));
         EXPECT_EQ(tick.proxy.status, UpdateStatus::done);

@@ -18,11 +18,8 @@ namespace {
 using Set = std::shared_ptr<const Layers>;
 
 Set levels(const std::vector<double>& at, double closing = 1) {
-    Layers layers;
+    Layers layers = surfaces_at(at, 0.5, 0.5);
     layers.closing = closing;
-    for (const double level : at) {
-        layers.layers.push_back(layer_of("at " + std::to_string(level), level, 0.5, 0.5));
-    }
     return std::make_shared<const Layers>(layers);
 }
 

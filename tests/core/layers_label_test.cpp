@@ -2,21 +2,18 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
-#include "palpate/renderer.hpp"
+#include "support/constants.hpp"
 #include "support/cubic_guarantees.hpp"
 #include "support/fields.hpp"
 #include "support/hand.hpp"
-#include "support/press.hpp"
+#include "support/layer.hpp"
 
 using namespace palpate;
 using namespace palpate::support;
 using enum HapticProperty;
 
 namespace {
-
-constexpr double never = std::numeric_limits<double>::infinity();
 
 /// Slabs across z on a grid of 2 mm: label 7 from 20 mm, 3 from 40, 5 from 60. Their surfaces lie
 /// half a voxel before their first samples.
@@ -31,36 +28,15 @@ Volume slabs() {
 Layers three_labels() {
     Layers layers;
     layers.by_label = true;
-    int number = 0;
-    for (const double label : {7.0, 3.0, 5.0}) {
-        Layer layer;
-        layer.name = "label " + std::to_string(int(label));
-        layer.level = label;
-        layer[stiffness] = 0.4 + 0.2 * number;
-        layer[puncture_force] = number == 2 ? never : 0.5 + 0.4 * number;
-        ++number;
-        layers.layers.push_back(layer);
-    }
+    layers.layers = {layer_of("label 7", 7, 0.4, 0.5), layer_of("label 3", 3, 0.6, 0.9),
+                     layer_of("label 5", 5, 0.8, infinity)};
     return layers;
 }
 
 Renderer labelled(Field data, Layers layers, const Volume& labels) {
     layers.labels = numbered_labels(labels, layers.layers);
-    RendererSettings settings = at_once();
-    settings.layers = std::make_shared<Layers>(std::move(layers));
-    settings.force.limit = settings.device.maximum_force = 100;
-    return make_renderer(std::move(data), 1e3, settings);
+    return make_renderer(std::move(data), 1e3, layered_settings(std::move(layers)));
 }
-
-struct LabelHand {
-    Renderer renderer;
-    double time = 0;
-
-    Tick to(const Vec3& position) {
-        time += 0.001;
-        return render(renderer, {.time = time, .position = position});
-    }
-};
 
 }  // namespace
 
@@ -69,7 +45,7 @@ TEST(LabelLayers, give_the_force_of_the_closed_form_at_every_speed) {
         for (const double speed : {20.0, 200.0, 1000.0}) {
             Field data = ramp_field();
             data.set_interpolation(interpolation);
-            LabelHand hand{labelled(data, three_labels(), slabs())};
+            RenderedHand hand{labelled(data, three_labels(), slabs())};
             int punctured = 0;
             for (double depth = 3.03; depth < 66; depth += speed / 1000) {
                 const Tick tick = hand.to(at_depth(depth));
@@ -77,7 +53,7 @@ TEST(LabelLayers, give_the_force_of_the_closed_form_at_every_speed) {
                 double force = 0;
                 const std::array<double, 3> at{19, 39, 59};
                 for (int i = 0; i < 3; ++i) {
-                    const double k = 0.4 + 0.2 * i, most = i == 2 ? never : 0.5 + 0.4 * i;
+                    const double k = 0.4 + 0.2 * i, most = i == 2 ? infinity : 0.5 + 0.4 * i;
                     if (depth > at[i]) force = k * (depth - at[i]) < most ? k * (depth - at[i]) : 0;
                 }
                 ASSERT_NEAR(-tick.force[2], force, 1e-6) << speed << " mm/s at " << depth;
@@ -88,7 +64,7 @@ TEST(LabelLayers, give_the_force_of_the_closed_form_at_every_speed) {
 }
 
 TEST(LabelLayers, are_felt_from_inside_and_named) {
-    LabelHand hand{labelled(ramp_field(), three_labels(), slabs())};
+    RenderedHand hand{labelled(ramp_field(), three_labels(), slabs())};
     Tick tick;
     for (double depth = 10; depth < 30; depth += 0.1) tick = hand.to(at_depth(depth));
     EXPECT_EQ(tick.layers.inside, 1);
@@ -103,7 +79,7 @@ TEST(LabelLayers, are_felt_from_inside_and_named) {
 }
 
 TEST(LabelLayers, tell_the_density_of_the_data_where_they_are_felt) {
-    LabelHand hand{labelled(ramp_field(), three_labels(), slabs())};
+    RenderedHand hand{labelled(ramp_field(), three_labels(), slabs())};
     hand.to(at_depth(10));
     const Tick tick = hand.to(at_depth(19.5));
     EXPECT_EQ(hand.renderer.proxy.scp_physical, tick.proxy.scp);
@@ -115,7 +91,7 @@ TEST(LabelLayers, take_curves_over_the_densities_at_their_surfaces) {
     Layers layers = three_labels();
     layers.layers[0][stiffness].reset();
     layers[stiffness].density.knots = {{0, 0}, {38, 0.76}};
-    LabelHand hand{labelled(ramp_field(), layers, slabs())};
+    RenderedHand hand{labelled(ramp_field(), layers, slabs())};
     hand.to(at_depth(18));
     hand.to(at_depth(19.5));
     EXPECT_NEAR(hand.to(at_depth(19.5)).force[2], -0.38 * 0.5, 1e-6) << "the density there is 19";
@@ -130,20 +106,15 @@ TEST(LabelLayers, are_never_passed_while_they_hold) {
     for (const Interpolation interpolation : {Interpolation::linear, Interpolation::cubic}) {
         Layers layers;
         layers.by_label = true;
-        for (int i = 0; i < 3; ++i) {
-            Layer layer;
-            layer.name = std::to_string(i);
-            layer.level = i + 1;
-            layer[puncture_force] = i == 2 ? never : 0.3;
-            layers.layers.push_back(layer);
-        }
+        layers.layers = {layer_of("0", 1, 0.5, 0.3), layer_of("1", 2, 0.5, 0.3),
+                         layer_of("2", 3, 0.5, infinity)};
         Field data = noise_field().field;
         data.set_interpolation(interpolation);
         int touched = 0, punctured = 0, inside = 0;
         const int count = scaled_or_asked(20000);
         // Several hands, as one may be caught in what never gives way.
         for (unsigned seed = 1; seed <= 8; ++seed) {
-            LabelHand hand{labelled(data, layers, labels)};
+            RenderedHand hand{labelled(data, layers, labels)};
             Hand moves(labels.geometry(), seed);
             for (int i = 0; i < count / 8; ++i) {
                 const std::uint32_t before = hand.renderer.layers.open;
@@ -175,13 +146,13 @@ TEST(LabelLayers, are_never_passed_while_they_hold) {
 
 TEST(LabelLayers, begin_where_the_hand_is_but_in_nothing_that_never_gives_way) {
     Layers layers = three_labels();
-    layers.layers[0][puncture_force] = never;  // label 7: nobody is in it; behind it one may be
+    layers.layers[0][puncture_force] = infinity;  // label 7: nobody is in it; behind it one may be
     {
-        LabelHand hand{labelled(ramp_field(), layers, slabs())};
+        RenderedHand hand{labelled(ramp_field(), layers, slabs())};
         EXPECT_EQ(hand.to(at_depth(25)).layers.inside, 0);
         EXPECT_NEAR(hand.renderer.proxy.scp_physical[2], 19, 1e-6);
     }
-    LabelHand hand{labelled(ramp_field(), layers, slabs())};
+    RenderedHand hand{labelled(ramp_field(), layers, slabs())};
     EXPECT_EQ(hand.to(at_depth(50)).layers.inside, 2);
     EXPECT_EQ(hand.to(at_depth(50)).force.norm(), 0);
 }

@@ -6,13 +6,11 @@
 
 #include "layers/cover.hpp"
 #include "palpate/field.hpp"
-#include "palpate/renderer.hpp"
 #include "support/constants.hpp"
 #include "support/cubic_guarantees.hpp"
 #include "support/fields.hpp"
 #include "support/hand.hpp"
 #include "support/layer.hpp"
-#include "support/press.hpp"
 
 using namespace palpate;
 using namespace palpate::support;
@@ -41,25 +39,10 @@ Volume label_slab() {
     return label_slab([](const Index3&) { return true; });
 }
 
-RendererSettings settings_with(Layers layers, const Volume& labels) {
+RenderedHand mixed(Field data, Layers layers, const Volume& labels) {
     layers.labels = numbered_labels(labels, layers.layers, layers.levels_beside_labels);
-    RendererSettings settings = at_once();
-    settings.layers = std::make_shared<Layers>(std::move(layers));
-    settings.force.limit = settings.device.maximum_force = 100;
-    return settings;
+    return {make_renderer(std::move(data), 1e3, layered_settings(std::move(layers)))};
 }
-
-struct MixedHand {
-    Renderer renderer;
-    double time = 0;
-
-    MixedHand(Field data, Layers layers, const Volume& labels)
-        : renderer(make_renderer(std::move(data), 1e3, settings_with(std::move(layers), labels))) {}
-    Tick to(const Vec3& position) {
-        time += 0.001;
-        return render(renderer, {.time = time, .position = position});
-    }
-};
 
 /// Part of the way at which the density's line from 43 to the solid value of a label crosses the
 /// level 70: between the levels 30 and 70, labels are 50 or 90.
@@ -75,7 +58,7 @@ TEST(MixedLayers, give_the_force_of_the_closed_form_at_every_speed) {
     const Surface surfaces[] = {
         {30, 0.4, 0.5}, {into_label, 0.6, 0.8}, {55.5, 0.6, 0.8}, {70, 1, infinity}};
     for (const double speed : {20.0, 200.0, 1000.0}) {
-        MixedHand hand(ramp_field(), skin_bone_and_label(), label_slab());
+        RenderedHand hand = mixed(ramp_field(), skin_bone_and_label(), label_slab());
         int punctured = 0;
         for (double depth = 3.03; depth < 75; depth += speed / 1000) {
             const Tick tick = hand.to(at_depth(depth));
@@ -95,7 +78,7 @@ TEST(MixedLayers, are_named_and_felt_from_inside) {
     for (const Interpolation interpolation : {Interpolation::linear, Interpolation::cubic}) {
         Field data = ramp_field();
         data.set_interpolation(interpolation);
-        MixedHand hand(data, skin_bone_and_label(), label_slab());
+        RenderedHand hand = mixed(data, skin_bone_and_label(), label_slab());
         const auto move = [&](double from, double to) {
             Tick tick;
             const double step = from < to ? 0.05 : -0.05;
@@ -134,15 +117,15 @@ TEST(MixedLayers, surfaces_of_the_density_are_exact_where_no_label_is_near) {
     for (const Interpolation interpolation : {Interpolation::linear, Interpolation::cubic}) {
         Field data = ramp_field();
         data.set_interpolation(interpolation);
-        MixedHand mixed(data, skin_bone_and_label(), far);
-        RendererSettings settings = mixed.renderer.settings;
+        RenderedHand both = mixed(data, skin_bone_and_label(), far);
+        RendererSettings settings = both.renderer.settings;
         settings.layers = std::make_shared<Layers>(alone);
         Renderer levels = make_renderer(data, 1e3, settings);
         double time = 0;
         for (double depth = 3; depth < 75; depth += 0.05) {
             const Vec3 at(6.5 + 0.5 * std::sin(depth), 4 + 2 * std::cos(3 * depth), depth);
             time += 0.001;
-            const Tick a = mixed.to(at), b = render(levels, {.time = time, .position = at});
+            const Tick a = both.to(at), b = render(levels, {.time = time, .position = at});
             ASSERT_EQ(a.proxy.scp, b.proxy.scp) << depth;
             ASSERT_EQ(a.layers.touched, b.layers.touched) << depth;
             ASSERT_EQ(a.layers.inside, b.layers.inside) << depth;
@@ -171,7 +154,7 @@ TEST(MixedLayers, are_never_passed_while_they_hold) {
                              layer_of("inner", level(0.7), 1, infinity),
                              layer_of("one", 1, 0.5, 0.3), layer_of("two", 2, 0.7, 0.2),
                              layer_of("three", 3, 0.9, infinity)};
-            MixedHand hand(data, layers, labels);
+            RenderedHand hand = mixed(data, layers, labels);
             Hand moves(data.geometry(), 9);
             int touched = 0, punctured = 0, in_label = 0, on_level = 0;
             const int count = scaled_or_asked(20000);
@@ -209,14 +192,14 @@ TEST(MixedLayers, are_never_passed_while_they_hold) {
 }
 
 TEST(MixedLayers, begin_outside_of_a_level_that_the_hand_is_on) {
-    MixedHand hand(ramp_field(), skin_bone_and_label(), label_slab());
+    RenderedHand hand = mixed(ramp_field(), skin_bone_and_label(), label_slab());
     EXPECT_EQ(hand.to(at_depth(30 + 5e-8)).layers.inside, 0) << "as with levels alone";
 }
 
 TEST(MixedLayers, begin_in_the_tissue_round_a_label_that_never_gives_way) {
     Layers layers = skin_bone_and_label();
     layers.layers[2][puncture_force] = infinity;
-    MixedHand hand(ramp_field(), layers, label_slab());
+    RenderedHand hand = mixed(ramp_field(), layers, label_slab());
     EXPECT_EQ(hand.to(at_depth(45)).layers.inside, 1) << "the density there is that of skin";
     for (int i = 0; i < 20; ++i) hand.to(at_depth(45));
     const double z = hand.renderer.proxy.scp_physical[2];
@@ -224,7 +207,7 @@ TEST(MixedLayers, begin_in_the_tissue_round_a_label_that_never_gives_way) {
 }
 
 TEST(MixedLayers, follow_edits_and_leave_labels_where_they_are) {
-    MixedHand hand(ramp_field(), skin_bone_and_label(), label_slab());
+    RenderedHand hand = mixed(ramp_field(), skin_bone_and_label(), label_slab());
     for (double depth = 20; depth < 36; depth += 0.1) hand.to(at_depth(depth));
     ASSERT_EQ(hand.to(at_depth(36)).layers.inside, 1);
     // Denser by 25 everywhere: bone begins at 45, behind the label's first sample.

@@ -9,7 +9,7 @@
 #include "support/cubic_guarantees.hpp"
 #include "support/fields.hpp"
 #include "support/hand.hpp"
-#include "support/press.hpp"
+#include "support/layer.hpp"
 
 using namespace palpate;
 using namespace palpate::support;
@@ -18,11 +18,7 @@ using enum HapticProperty;
 namespace {
 
 Layer needled(const std::string& name, double level, double k, double force, double drag_force) {
-    Layer made;
-    made.name = name;
-    made.level = level;
-    made[stiffness] = k;
-    made[puncture_force] = force;
+    Layer made = layer_of(name, level, k, force);
     made[drag] = drag_force;
     return made;
 }
@@ -65,14 +61,8 @@ struct NeedleHand {
     double farthest_off_line = 0;
 
     NeedleHand(const Field& field, const Layers& layers, double at)
-        : renderer(made(field, layers)) {
+        : renderer(renderer_of(field, layers)) {
         to(at);
-    }
-    static Renderer made(const Field& field, const Layers& layers) {
-        RendererSettings settings = at_once();
-        settings.layers = std::make_shared<Layers>(layers);
-        settings.force.limit = settings.device.maximum_force = 100;
-        return make_renderer(field, layers.layers.front().level, settings);
     }
     const NeedleState& needle() const { return renderer.layers.needle; }
     double tip() const { return last.proxy.scp[2]; }

@@ -9,7 +9,7 @@
 #include "support/cubic_guarantees.hpp"
 #include "support/fields.hpp"
 #include "support/hand.hpp"
-#include "support/press.hpp"
+#include "support/layer.hpp"
 
 using namespace palpate;
 using namespace palpate::support;
@@ -24,12 +24,9 @@ Layers layers_of(const TestField& test, std::initializer_list<double> parts,
                  std::initializer_list<double> stiffnesses, double force) {
     Layers layers;
     for (std::size_t i = 0; i < parts.size(); ++i) {
-        Layer layer;
-        layer.name = "layer " + std::to_string(i);
-        layer.level = test.isovalue + parts.begin()[i] * test.field.range() * test.field.sign();
-        layer[stiffness] = stiffnesses.begin()[i];
-        layer[puncture_force] = force;
-        layers.layers.push_back(layer);
+        const double off = parts.begin()[i] * test.field.range() * test.field.sign();
+        layers.layers.push_back(layer_of("layer " + std::to_string(i), test.isovalue + off,
+                                         stiffnesses.begin()[i], force));
     }
     return layers;
 }

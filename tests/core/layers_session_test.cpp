@@ -4,7 +4,7 @@
 #include "palpate/baselines/methods.hpp"
 #include "palpate/session.hpp"
 #include "support/constants.hpp"
-#include "support/press.hpp"
+#include "support/layer.hpp"
 #include "support/scripted_device.hpp"
 
 using namespace palpate;
@@ -13,17 +13,8 @@ using enum HapticProperty;
 
 namespace {
 
-std::shared_ptr<Layers> sent_layers(std::vector<double> levels, double force = infinity) {
-    auto layers = std::make_shared<Layers>();
-    for (const double level : levels) {
-        Layer one;
-        one.name = "at " + std::to_string(level);
-        one.level = level;
-        one[stiffness] = 0.5;
-        one[puncture_force] = force;
-        layers->layers.push_back(one);
-    }
-    return layers;
+std::shared_ptr<Layers> sent_layers(const std::vector<double>& levels, double force = infinity) {
+    return std::make_shared<Layers>(surfaces_at(levels, 0.5, force));
 }
 
 /// A session on the ramp, whose density is the depth, at level 30.

@@ -6,11 +6,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "palpate/renderer.hpp"
 #include "support/constants.hpp"
 #include "support/fields.hpp"
 #include "support/layer.hpp"
-#include "support/press.hpp"
 
 using namespace palpate;
 using namespace palpate::support;
@@ -40,32 +38,6 @@ double closed_form(const Layers& layers, double depth) {
     }
     return force;
 }
-
-Renderer renderer_of(const Field& field, const Layers& layers) {
-    RendererSettings settings = at_once();
-    settings.layers = std::make_shared<Layers>(layers);
-    settings.force.limit = 100;
-    settings.device.maximum_force = 100;
-    settings.force.damping = 0;
-    return make_renderer(field, layers.layers.empty() ? 0 : layers.layers.front().level, settings);
-}
-
-/// A hand that moves a renderer, at 1 kHz.
-struct LayeredHand {
-    Renderer renderer;
-    double time = 0;
-    std::vector<Step> path{};
-
-    Tick to(const Vec3& position) {
-        path.clear();
-        time += 0.001;
-        const StepObserver observer{[](const Step& step, void* to) {
-                                        static_cast<std::vector<Step>*>(to)->push_back(step);
-                                    },
-                                    &path};
-        return render(renderer, {.time = time, .position = position}, observer);
-    }
-};
 
 }  // namespace
 
@@ -118,7 +90,7 @@ TEST(Layers, give_the_force_of_the_closed_form_at_every_speed) {
         field.set_interpolation(interpolation);
         for (const double speed : {5.0, 50.0, 250.0, 1000.0}) {
             const Layers layers = five_layers();
-            LayeredHand hand{renderer_of(field, layers)};
+            RenderedHand hand{renderer_of(field, layers)};
             int punctured = 0, ticks = 0;
             double squares = 0;
             for (double depth = 0.30013; depth < 70; depth += speed / 1000) {
@@ -139,7 +111,7 @@ TEST(Layers, give_the_force_of_the_closed_form_at_every_speed) {
 TEST(Layers, are_felt_from_inside_after_they_closed) {
     Layers layers;
     layers.layers = {layer_of("vessel", 20, 0.5, 1), layer_of("core", 40, 0.5, infinity)};
-    LayeredHand hand{renderer_of(ramp_field(), layers)};
+    RenderedHand hand{renderer_of(ramp_field(), layers)};
     double depth = 15;
     for (; depth < 25; depth += 0.1) hand.to(at_depth(depth));
     Tick tick = hand.to(at_depth(25));
@@ -162,7 +134,7 @@ TEST(Layers, stay_open_near_where_they_gave_way) {
     Layers layers;
     layers.layers = {layer_of("skin", 20, 1, 0.5)};
     layers.closing = 2;
-    LayeredHand hand{renderer_of(ramp_field(), layers)};
+    RenderedHand hand{renderer_of(ramp_field(), layers)};
     hand.to(at_depth(19));
     Tick tick = hand.to(at_depth(20.6));
     EXPECT_EQ(tick.layers.punctured, 1);
@@ -184,12 +156,12 @@ TEST(Layers, take_properties_from_curves_over_density_and_gradient) {
     layers[stiffness].density.knots = {{0, 0}, {40, 0.8}};
     layers[stiffness].gradient.knots = {{0, 0}, {2, 1}};  // the ramp's is 1
     {
-        LayeredHand hand{renderer_of(ramp_field(), layers)};
+        RenderedHand hand{renderer_of(ramp_field(), layers)};
         hand.to(at_depth(19));
         EXPECT_NEAR(hand.to(at_depth(21)).force[2], -0.3 * 0.5, 1e-9);
     }
     layers.layers[0][stiffness].reset();
-    LayeredHand hand{renderer_of(ramp_field(), layers)};
+    RenderedHand hand{renderer_of(ramp_field(), layers)};
     hand.to(at_depth(19));
     EXPECT_NEAR(hand.to(at_depth(21)).force[2], -0.4 * 0.5, 1e-9);
 }
@@ -197,7 +169,7 @@ TEST(Layers, take_properties_from_curves_over_density_and_gradient) {
 TEST(Layers, without_surfaces_give_the_isovalue_its_properties) {
     Layers layers;
     layers[stiffness].density.knots = {{0, 0}, {40, 0.8}};
-    LayeredHand hand{renderer_of(ramp_field(), layers)};
+    RenderedHand hand{renderer_of(ramp_field(), layers)};
     hand.renderer.proxy.isovalue = 30;
     hand.to(at_depth(29));
     EXPECT_NEAR(hand.to(at_depth(31)).force[2], -0.6, 1e-9);
@@ -207,7 +179,7 @@ TEST(Layers, slow_a_hand_by_the_viscosity_of_what_it_is_in) {
     Layers layers;
     layers.layers = {layer_of("gel", 20, 0.5, 0.1), layer_of("core", 80, 0.5, infinity)};
     layers.layers[0][viscosity] = 1e-3;
-    LayeredHand hand{renderer_of(ramp_field(), layers)};
+    RenderedHand hand{renderer_of(ramp_field(), layers)};
     Tick tick;
     for (double depth = 10; depth < 19; depth += 0.1) tick = hand.to(at_depth(depth));
     EXPECT_EQ(tick.force.norm(), 0);
@@ -221,13 +193,13 @@ TEST(Layers, never_render_more_stiffness_than_the_device_takes) {
     Renderer renderer = renderer_of(ramp_field(), layers);
     renderer.settings.device.rate = 1000;
     renderer.settings.device.physical_damping = 1e-3;
-    LayeredHand hand{renderer};
+    RenderedHand hand{renderer};
     hand.to(at_depth(19));
     EXPECT_NEAR(hand.to(at_depth(20.5)).force[2], -1, 1e-6) << "2 N/mm at most";
 }
 
 TEST(Layers, begin_anew_where_the_proxy_is_when_others_take_their_place) {
-    LayeredHand hand{renderer_of(ramp_field(), five_layers())};
+    RenderedHand hand{renderer_of(ramp_field(), five_layers())};
     for (double depth = 5; depth < 29; depth += 0.1) hand.to(at_depth(depth));
     Layers two;
     two.layers = {layer_of("a", 20, 0.5, infinity), layer_of("b", 40, 0.5, infinity)};
@@ -248,7 +220,7 @@ TEST(Layers, give_way_at_their_force_in_grooves_and_corners_too) {
     for (const bool is_corner : {false, true}) {
         const Volume volume = is_corner ? volume_of<float>(grid({9, 9, 101}), corner)
                                         : volume_of<float>(grid({9, 9, 101}), groove);
-        LayeredHand hand{renderer_of(linear_field(volume), layers)};
+        RenderedHand hand{renderer_of(linear_field(volume), layers)};
         const double gives_way = 30 + 1 / 0.5;
         for (double z = 20; z < gives_way - 0.01; z += 0.05) {
             ASSERT_EQ(hand.to({4, 4, z}).layers.punctured, 0) << z;

@@ -11,6 +11,7 @@
 #include "palpate/field.hpp"
 #include "support/constants.hpp"
 #include "support/fields.hpp"
+#include "support/scratch_folder.hpp"
 
 using namespace palpate;
 using namespace palpate::support;
@@ -29,15 +30,9 @@ Volume made(const Geometry& geometry) {
     return Volume(geometry, std::vector<std::uint8_t>(count));
 }
 
-/// The message of a refusal.
 template <class F>
 std::string refusal(F&& make) {
-    try {
-        make();
-    } catch (const std::invalid_argument& error) {
-        return error.what();
-    }
-    return {};
+    return message_of<std::invalid_argument>(make);
 }
 
 }  // namespace

@@ -6,17 +6,14 @@
 #include <stdexcept>
 #include <string>
 
+#include "support/scratch_folder.hpp"
+
 namespace palpate::devices {
 namespace {
 
-std::string refusal(const auto& call) {
-    try {
-        call();
-    } catch (const std::invalid_argument& e) {
-        return e.what();
-    }
-    return "accepted";
-}
+constexpr auto refusal = [](const auto& call) {
+    return support::message_of<std::invalid_argument>(call);
+};
 
 TEST(DeviceOptions, a_name_alone_has_none) {
     const DeviceChoice choice = parse_device("haply");

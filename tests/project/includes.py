@@ -33,6 +33,7 @@ MAY_SEE = {
     "stream/loader": ("include", "io", "stream"),
     "stream/writer": ("include", "io", "stream", "stream/objects", "stream/formats", "stream/loader"),
     "devices": ("include", "io", "scenes"),
+    "devices/device_thread.cpp": ("include", "src", "devices"),  # the servo's clocks and privileges
     "run": ("include", "io", "baselines", "scenes", "filters", "stream", "devices"),
     "bindings/c": ("include", "io", "devices", "run"),
     "bindings/web": ("include", "io", "io/helper", "scenes", "devices"),

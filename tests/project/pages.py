@@ -11,7 +11,7 @@ from pathlib import Path
 
 import repository
 
-TEST = re.compile(r"\b(?:TEST|TEST_F|TEST_P|TYPED_TEST|\w+_TEST|RC_GTEST_\w+)\(\s*(\w+)\s*,\s*(\w+)")
+TEST = re.compile(r"\b(?:TEST|TEST_F|TEST_P|TYPED_TEST(?:_P)?|\w+_TEST|RC_GTEST_\w+)\(\s*(\w+)\s*,\s*(\w+)")
 PYTHON = re.compile(r"\bdef (?:test_)?(\w+)\(")
 NAMED = re.compile(r"(?:\w+/)?([A-Z]\w*|[a-z]+_[a-z]+)\.([a-z]\w*_\w+_\w+)")  # a suite and at least three words
 FILE = re.compile(r"(?:[\w.-]+/)+[\w.-]+\.(?:cpp|hpp|h|c|py|sh|cmake|map|md|csv|json)")
@@ -25,7 +25,7 @@ def known(root):
     tests, names, paths = set(), set(), set()
     for path in repository.files(root, folders=(*repository.FOLDERS, ".github")):
         paths.add(str(path.relative_to(root)))
-        if path.suffix in (".cpp", ".c", ".py") and "tests" in path.parts:
+        if path.suffix in (".cpp", ".hpp", ".c", ".py") and "tests" in path.parts:
             text = path.read_text(encoding="utf-8")
             tests.update(TEST.findall(text))
             names.update(PYTHON.findall(text))

@@ -1,13 +1,13 @@
 // A run whose device is chosen again while it is in use, on a stand-in for a vendor's library.
 #include <algorithm>
 
-#include "devices/forcedimension/forcedimension_fixture.hpp"
+#include "devices/forcedimension/forcedimension.hpp"
+#include "devices/forcedimension/mock_dhd.hpp"
+#include "devices/vendor_device.hpp"
 #include "run/run_support.hpp"
 
 namespace palpate::run {
 namespace {
-
-using devices::plugged_in;
 
 /// Its thread makes a step where the servo reads or waits.
 class Stepped final : public Device {
@@ -95,7 +95,7 @@ class SameDevice : public testing::Test {
         EXPECT_TRUE(presses());
     }
 
-    devices::MockDhd* mock_ = plugged_in(MOCK_DRD);
+    support::MockDhd* mock_ = devices::plugged_in<support::MockDhdState>(MOCK_DRD, "mock_dhd");
     std::shared_ptr<Data> data_ = test::stepped_data(test::loaded("synthetic:sphere:32x32x32"));
     std::optional<run::Run> live_;
 };

@@ -13,6 +13,7 @@
 #include "palpate/renderer.hpp"
 #include "support/cubic_guarantees.hpp"
 #include "support/fields.hpp"
+#include "support/layer.hpp"
 #include "support/paper_lattice.hpp"
 
 namespace palpate::support {
@@ -26,11 +27,9 @@ struct LayerPlan {
 inline Layers planned_layers(const TestField& test, const LayerPlan& plan) {
     Layers layers;
     for (std::size_t i = 0; i < plan.parts.size(); ++i) {
-        Layer layer;
-        layer.name = "layer " + std::to_string(i);
-        layer.level = test.isovalue + plan.parts[i] * test.field.range() * test.field.sign();
-        layer[HapticProperty::stiffness] = plan.stiffnesses[i];
-        layer[HapticProperty::puncture_force] = plan.forces[i];
+        const double off = plan.parts[i] * test.field.range() * test.field.sign();
+        Layer layer = layer_of("layer " + std::to_string(i), test.isovalue + off,
+                               plan.stiffnesses[i], plan.forces[i]);
         layer[HapticProperty::static_friction] = plan.static_friction;
         layer[HapticProperty::dynamic_friction] = 0.8 * plan.static_friction;
         layers.layers.push_back(layer);

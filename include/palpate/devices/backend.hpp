@@ -1,7 +1,8 @@
 // The interface of a backend: one function that looks for it, one that opens it. A backend NAME
-// is the folder devices/NAME with the header NAME.hpp, which declares
-//   DeviceFinding find_NAME();
-//   std::unique_ptr<Device> open_NAME(const DeviceChoice& choice, const DeviceScene& scene);
+// is the folder devices/NAME with the header NAME.hpp, which declares them. The table in
+// devices/devices.cpp makes of them
+//   DeviceFinding find();
+//   std::unique_ptr<Device> open(const DeviceChoice& choice, const DeviceScene& scene);
 #pragma once
 
 #include <functional>

@@ -28,6 +28,7 @@ class DeviceOptions {
 
     std::string text(const std::string& key, const std::string& otherwise);
     double number(const std::string& key, double otherwise, double low, double high);
+    int whole_number(const std::string& key, int otherwise, int low, int high);
     bool flag(const std::string& key, bool otherwise);
     /// One of `accepted`.
     std::string one_of(const std::string& key, const std::string& otherwise,

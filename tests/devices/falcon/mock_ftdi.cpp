@@ -6,8 +6,6 @@
 #include <cstdlib>
 #include <deque>
 
-#define MOCK_EXPORT extern "C" __attribute__((visibility("default")))
-
 namespace {
 
 using palpate::support::MockFtdi;
@@ -141,12 +139,7 @@ MOCK_EXPORT void ftdi_list_free(void** list) {
 
 MOCK_EXPORT int ftdi_usb_open_desc_index(void*, int, int, const char*, const char*,
                                          unsigned int index) {
-    std::function<void()> meanwhile;
-    {
-        const std::lock_guard lock(mock.mutex);
-        meanwhile = mock.state.while_opening;
-    }
-    if (meanwhile) meanwhile();
+    mock.meanwhile(&MockFtdiState::while_opening);
     const std::lock_guard lock(mock.mutex);
     ++mock.state.opens;
     line = {};
@@ -193,10 +186,12 @@ MOCK_EXPORT int ftdi_setdtr(void*, int on) {
     return result();
 }
 
+#ifndef MOCK_FTDI_LACKS_RTS
 MOCK_EXPORT int ftdi_setrts(void*, int) {
     const std::lock_guard lock(mock.mutex);
     return result();
 }
+#endif
 
 MOCK_EXPORT int ftdi_set_latency_timer(void*, unsigned char ms) {
     const std::lock_guard lock(mock.mutex);
@@ -205,7 +200,6 @@ MOCK_EXPORT int ftdi_set_latency_timer(void*, unsigned char ms) {
 }
 
 MOCK_EXPORT int ftdi_read_data(void*, unsigned char* bytes, int size) {
-    std::function<void(int)> waits;
     int latency = 0;
     {
         const std::lock_guard lock(mock.mutex);
@@ -219,16 +213,18 @@ MOCK_EXPORT int ftdi_read_data(void*, unsigned char* bytes, int size) {
             return got;
         }
         arrive(1);
-        waits = mock.state.while_waiting;
         latency = line.latency;
     }
-    if (waits) waits(latency);
+    mock.meanwhile(&MockFtdiState::while_waiting, latency);
     return 0;
 }
 
 MOCK_EXPORT int ftdi_write_data(void*, const unsigned char* bytes, int size) {
     const std::lock_guard lock(mock.mutex);
-    if (mock.state.is_unplugged) return no_device;
+    if (mock.state.is_unplugged) {
+        mock.state.motors = {};
+        return no_device;
+    }
     if (line.rate == 9600 && line.dtr && line.latency == 16 && !mock.state.loader_is_dead) {
         if (size == 3 && bytes[0] == 0x0a && bytes[1] == 0x43 && bytes[2] == 0x0d) {
             send({0x0a, 0x44, 0x2c, 0x0d});

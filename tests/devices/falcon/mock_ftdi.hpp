@@ -5,13 +5,13 @@
 #include <array>
 #include <cstddef>
 #include <functional>
-#include <mutex>
 #include <string>
 #include <vector>
 
+#include "devices/stand_in.hpp"
+
 namespace palpate::support {
 
-/// What can be copied: lock `MockFtdi::mutex` for all of it.
 struct MockFtdiState {
     // The device.
     int count = 1;
@@ -45,10 +45,7 @@ struct MockFtdiState {
     int contexts = 0;  // that were made and not freed
 };
 
-struct MockFtdi {
-    std::mutex mutex;
-    MockFtdiState state;
-};
+using MockFtdi = StandIn<MockFtdiState>;
 
 }  // namespace palpate::support
 

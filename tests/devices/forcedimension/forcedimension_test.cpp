@@ -3,26 +3,10 @@
 
 #include <limits>
 
-#include "devices/blocked_driver.hpp"
-#include "support/eventually.hpp"
+#include "devices/vendor_cases.hpp"
 
 namespace palpate::devices {
 namespace {
-
-TEST_F(ForceDimension, a_missing_library_is_named_with_what_to_install) {
-    const auto open_nothing = [] {
-        open_forcedimension(parse_device("forcedimension:library=/nowhere/libdhd.so.3"),
-                            any_scene());
-    };
-    const std::string message = message_of<DeviceError>(open_nothing);
-    EXPECT_TRUE(contains(message, "device forcedimension: ")) << message;
-    EXPECT_TRUE(contains(message, "/nowhere/libdhd.so.3")) << message;
-    EXPECT_TRUE(contains(message, "install Force Dimension's SDK")) << message;
-    EXPECT_TRUE(contains(message, "library=PATH")) << message;
-    const DeviceFinding finding = forcedimension::find("/nowhere/libdhd.so.3");
-    EXPECT_FALSE(finding.found);
-    EXPECT_TRUE(contains(finding.missing, "/nowhere/libdhd.so.3")) << finding.missing;
-}
 
 TEST_F(ForceDimension, looking_for_it_counts_the_devices_and_opens_none) {
     with([](auto& dhd) { dhd.count = 2; });
@@ -34,17 +18,6 @@ TEST_F(ForceDimension, looking_for_it_counts_the_devices_and_opens_none) {
     EXPECT_FALSE(nothing.found);
     EXPECT_TRUE(contains(nothing.missing, "connect it")) << nothing.missing;
     EXPECT_TRUE(with([](auto& dhd) { return dhd.calls.empty(); }));
-    const DeviceFinding usual = find_forcedimension();
-    EXPECT_EQ(usual.name, "forcedimension");
-    EXPECT_NE(usual.found, usual.what.empty());
-    EXPECT_EQ(usual.found, usual.missing.empty());
-}
-
-TEST_F(ForceDimension, a_library_without_a_function_that_is_needed_is_refused_by_its_name) {
-    use(MOCK_DHD_LACKING);
-    const std::string message = refusal();
-    EXPECT_TRUE(contains(message, "dhdGetStatus")) << message;
-    EXPECT_FALSE(forcedimension::find(MOCK_DHD_LACKING).found);
 }
 
 TEST_F(ForceDimension, options_that_cannot_be_meant_are_refused) {
@@ -70,22 +43,6 @@ TEST_F(ForceDimension, a_device_that_is_not_there_or_does_not_open_is_told_with_
     EXPECT_TRUE(contains(refusal(), "cannot open device 0: device already in use"));
     with([](auto& dhd) { dhd.count = 0; });
     EXPECT_TRUE(contains(refusal(), "no device (0 found): connect it"));
-}
-
-TEST_F(ForceDimension, one_device_does_not_serve_two_hands_and_is_not_closed_for_the_first) {
-    auto first = open();
-    with([](auto& dhd) { dhd.calls.clear(); });
-    EXPECT_TRUE(contains(refusal(",index=0"), "serves another hand"));
-    EXPECT_TRUE(with([](auto& dhd) { return dhd.calls.empty(); }));
-    first.reset();
-    EXPECT_NO_THROW(open(",index=0"));
-}
-
-TEST_F(ForceDimension, an_opening_that_is_stopped_is_left_alone_and_closed_at_its_end) {
-    support::expect_a_stopped_opening_is_left_alone(
-        [&](const OnProgress& progress) { return open("", 1000, progress); },
-        [&](const auto& block) { with([&](auto& dhd) { dhd.while_opening = block; }); });
-    EXPECT_FALSE(with([](auto& dhd) { return dhd.is_open; }));
 }
 
 TEST_F(ForceDimension, each_model_has_its_own_limits) {
@@ -210,26 +167,16 @@ TEST_F(ForceDimension, a_wrist_turns_in_our_axes) {
     EXPECT_LE((device->read(0).orientation - about_y).norm(), 1e-12);
 }
 
-TEST_F(ForceDimension, a_force_arrives_in_newtons_in_the_axes_it_was_written_in) {
+TEST_F(ForceDimension, a_force_to_the_right_up_and_towards_the_person_is_one_along_y_z_and_x) {
     const auto device = open();
-    EXPECT_TRUE(presses(*device, Vec3(0.5, -1, 2)));
-    // To the right, up, and towards the person: the library's y, z and x.
-    EXPECT_TRUE(within(
-        felt,
-        [&] {
-            const auto raw = with([](auto& dhd) { return dhd.force; });
-            return raw == std::array<double, 3>{3, 1, 2};
-        },
-        [&] { device->write({Vec3(1, 2, 3)}, 0); }));
+    EXPECT_TRUE(presses(*device, Vec3(1, 2, 3)));
+    EXPECT_EQ(with([](auto& dhd) { return dhd.force; }), (std::array<double, 3>{3, 1, 2}));
     EXPECT_EQ(with([](auto& dhd) { return dhd.wrong_id; }), 0);
 }
 
 TEST_F(ForceDimension, a_force_beyond_the_devices_own_is_cut_to_it) {
     const auto device = open();
-    const Vec3 cut = Vec3(0.6, 0, 0.8) * 12;
-    EXPECT_TRUE(within(
-        felt, [&] { return (force() - cut).norm() < 1e-12; },
-        [&] { device->write({Vec3(30, 0, 40)}, 0); }));
+    EXPECT_TRUE(is_given(*device, {Vec3(30, 0, 40)}, {Vec3(0.6, 0, 0.8) * 12}, felt));
     EXPECT_LE(with([](auto& dhd) { return dhd.largest_force; }), 12 + 1e-12);
     EXPECT_EQ(with([](auto& dhd) { return dhd.max_force; }), 12);
 }
@@ -242,24 +189,6 @@ TEST_F(ForceDimension, the_time_guard_and_a_saturated_motor_are_no_errors) {
     const auto device = open();
     EXPECT_TRUE(presses(*device));
     EXPECT_TRUE(has_no_problem(*device));
-}
-
-TEST_F(ForceDimension, the_force_goes_to_zero_when_the_servo_falls_silent) {
-    const auto device = open();
-    ASSERT_TRUE(presses(*device));
-    EXPECT_TRUE(goes_to_zero_in_silence());
-    EXPECT_TRUE(becomes(*device, DeviceStatus::ready));
-    EXPECT_TRUE(presses(*device));
-}
-
-TEST_F(ForceDimension, the_force_goes_to_zero_for_good_when_it_is_stopped) {
-    const auto device = open();
-    ASSERT_TRUE(presses(*device));
-    device->stop();
-    EXPECT_TRUE(device->is_stopping());
-    EXPECT_TRUE(stays_at_zero(*device));
-    EXPECT_FALSE(device->is_stopping());
-    EXPECT_TRUE(becomes(*device, DeviceStatus::ready));
 }
 
 TEST_F(ForceDimension, it_is_switched_on_and_off_in_order_and_its_last_force_is_zero) {
@@ -361,18 +290,6 @@ TEST_F(ForceDimension, a_device_whose_force_cannot_be_switched_on_is_no_ready_on
     EXPECT_TRUE(presses(*device));
 }
 
-TEST_F(ForceDimension, a_broken_connection_in_contact_is_lost_and_without_force_until_it_is_back) {
-    const auto device = open();
-    ASSERT_TRUE(presses(*device));
-    with([](auto& dhd) { dhd.position_error = 2; });
-    ASSERT_TRUE(becomes(*device, DeviceStatus::lost));
-    EXPECT_TRUE(says(*device, "no connection to the device (communication error)"));
-    EXPECT_TRUE(stays_at_zero(*device));
-    with([](auto& dhd) { dhd.position_error = 0; });
-    EXPECT_TRUE(presses(*device));
-    EXPECT_TRUE(has_no_problem(*device));
-}
-
 TEST_F(ForceDimension, an_error_of_reading_or_of_force_is_a_fault_in_the_librarys_words) {
     const auto device = open();
     ASSERT_TRUE(presses(*device));
@@ -419,64 +336,34 @@ TEST_F(ForceDimension, a_device_that_never_tells_of_its_force_is_ready_all_the_s
     EXPECT_TRUE(has_no_problem(*device));
 }
 
-TEST_F(ForceDimension, a_position_that_cannot_be_is_a_fault_and_never_told) {
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    const auto device = open();
-    for (const std::array<double, 3>& absurd :
-         {std::array<double, 3>{nan, 0, 0}, {0, 10.001, 0}, {0, 0, -1e300}}) {
-        with([](auto& dhd) { dhd.position = {}; });
-        ASSERT_TRUE(presses(*device));
-        with([&](auto& dhd) { dhd.position = absurd; });
-        ASSERT_TRUE(becomes(*device, DeviceStatus::fault));
-        EXPECT_EQ(device->read(0).position, Vec3(0, 0, 0));
-        EXPECT_TRUE(says(*device, "cannot be"));
-        EXPECT_TRUE(stays_at_zero(*device));
+TEST_F(ForceDimension, that_is_slow_is_said_to_drop_its_force_only_if_it_took_the_watchdog) {
+    for (const bool refuses : {false, true}) {
+        with([&](auto& dhd) {
+            dhd.refuses_watchdog = refuses;
+            dhd.while_reading = [] { pass(50ms); };
+        });
+        const auto device = open();
+        ASSERT_TRUE(becomes(*device, DeviceStatus::stale));
+        EXPECT_TRUE(says(*device, "takes too long"));
+        EXPECT_TRUE(says(*device, refuses ? "it may still hold the last force"
+                                          : "the device drops the last force by itself"));
+        EXPECT_EQ(with([](auto& dhd) { return dhd.watchdog; }), refuses ? 17 : 240);
     }
 }
 
-TEST_F(ForceDimension, readings_of_a_slow_library_are_never_ready_and_get_no_force) {
-    with([](auto& dhd) { dhd.while_reading = [] { pass(50ms); }; });
-    const auto device = open();
-    ASSERT_TRUE(becomes(*device, DeviceStatus::stale));
-    EXPECT_TRUE(says(*device, "takes too long"));
-    EXPECT_TRUE(says(*device, "the device drops the last force by itself"));
-    EXPECT_TRUE(throughout(
-        300ms, [&] { return device->read(0).status != DeviceStatus::ready && force().isZero(0); },
-        [&] { device->write({Vec3(1, 1, 1)}, 0); }));
-    with([](auto& dhd) { dhd.while_reading = nullptr; });
-    EXPECT_TRUE(presses(*device));
-}
+INSTANTIATE_TYPED_TEST_SUITE_P(ForceDimension, Vendor, ForceDimension);
+INSTANTIATE_TYPED_TEST_SUITE_P(Paced, ThreadOf, ForceDimension);
 
-TEST_F(ForceDimension, a_watchdog_that_was_refused_is_not_promised) {
-    with([](auto& dhd) {
-        dhd.refuses_watchdog = true;
-        dhd.while_reading = [] { pass(50ms); };
-    });
-    const auto device = open();
-    ASSERT_TRUE(becomes(*device, DeviceStatus::stale));
-    EXPECT_TRUE(says(*device, "it may still hold the last force"));
-    EXPECT_EQ(with([](auto& dhd) { return dhd.watchdog; }), 17);
-}
-
-/// The device's thread, at its real pace.
 class PacedForceDimension : public ForceDimension {};
 
-TEST_F(PacedForceDimension, its_thread_presses_at_4_khz_at_most_until_it_is_closed) {
+TEST_F(PacedForceDimension, its_thread_steps_at_4_khz_at_most) {
+    const auto loops = [&] { return with([](auto& dhd) { return dhd.loops; }); };
     const auto begun = std::chrono::steady_clock::now();
-    auto device =
-        open_forcedimension(parse_device("forcedimension:library=" + library_), any_scene());
-    const Vec3 newtons(1, 2, 0);
-    EXPECT_TRUE(support::comes_true([&] {
-        device->write({newtons, Vec3::Zero()}, 0);
-        return (force() - newtons).norm() < 1e-12;
-    }));
-    EXPECT_TRUE(support::comes_true([&] { return force().isZero(0); }));  // the servo is silent
-    EXPECT_TRUE(support::comes_true([&] { return device->read(0).status == DeviceStatus::ready; }));
-    const long loops = with([](auto& dhd) { return dhd.loops; });
+    const auto device = open_device(choice(), any_scene());
+    EXPECT_TRUE(support::comes_true([&] { return loops() > 100; }));
+    const auto seen = static_cast<double>(loops());
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
-    EXPECT_LE(static_cast<double>(loops), 4000 * took.count() + 2);
-    device.reset();
-    EXPECT_FALSE(with([](auto& dhd) { return dhd.is_open; }));
+    EXPECT_LE(seen, 4000 * took.count() + 2);
 }
 
 }  // namespace

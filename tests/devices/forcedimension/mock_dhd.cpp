@@ -12,8 +12,6 @@
 #include <initializer_list>
 #include <thread>
 
-#define MOCK_EXPORT extern "C" __attribute__((visibility("default")))
-
 namespace {
 
 using palpate::support::MockDhd;
@@ -67,23 +65,13 @@ class Call {
     std::lock_guard<std::mutex> lock_;
 };
 
-/// Runs the function that the test wants during a call, without the lock.
-void meanwhile(std::function<void()> MockDhdState::*what) {
-    std::function<void()> happens;
-    {
-        const std::lock_guard lock(mock.mutex);
-        happens = mock.state.*what;
-    }
-    if (happens) happens();
-}
-
 int open_device(char index, const char* name) {
     // As a driver whose bus is stuck. Its file is open meanwhile, so that a test sees it.
     if (const char* const seen = std::getenv("MOCK_DHD_HANGS")) {
         const std::ifstream file(seen);
         std::this_thread::sleep_for(std::chrono::hours(1));
     }
-    meanwhile(&MockDhdState::while_opening);
+    mock.meanwhile(&MockDhdState::while_opening);
     const std::lock_guard lock(mock.mutex);
     mock.state.calls.emplace_back(name);
     if (mock.state.refuses_open || index != 0) return fail(20);
@@ -192,7 +180,7 @@ MOCK_EXPORT int dhdGetStatus(int* status, char id) {
 #endif
 
 MOCK_EXPORT int dhdGetPosition(double* x, double* y, double* z, char id) {
-    meanwhile(&MockDhdState::while_reading);
+    mock.meanwhile(&MockDhdState::while_reading);
     const Call call(id);
     if (call->position_error) return fail(call->position_error);
     *x = call->position[0];
@@ -361,7 +349,7 @@ MOCK_EXPORT bool drdIsInitialized(char id) {
 }
 
 MOCK_EXPORT int drdAutoInit(char id) {
-    meanwhile(&MockDhdState::while_initialising);
+    mock.meanwhile(&MockDhdState::while_initialising);
     const Call call(id, "initialise");
     call->is_regulating = true;
     if (!call->initialises) return fail(8);
@@ -400,7 +388,7 @@ MOCK_EXPORT int drdStop(bool stays_on, char id) {
 }
 
 MOCK_EXPORT int drdMoveToRot(double a, double b, double c, bool wait, char id) {
-    meanwhile(&MockDhdState::while_centring);
+    mock.meanwhile(&MockDhdState::while_centring);
     const Call call(id, "turn");
     const bool straight = a == 0 && b == 0 && c == 0 && wait;
     const bool wrist_alone = call->regulates_rotation && !call->regulates_position;

@@ -3,14 +3,14 @@
 
 #include <array>
 #include <functional>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "devices/stand_in.hpp"
+
 namespace palpate::support {
 
-/// What can be copied: lock `MockDhd::mutex` for all of it.
 struct MockDhdState {
     // The device.
     int count = 1;
@@ -66,10 +66,7 @@ struct MockDhdState {
     std::array<double, 3> force_at_stop{1, 1, 1};  // as applied when dhdStop was called
 };
 
-struct MockDhd {
-    std::mutex mutex;
-    MockDhdState state;
-};
+using MockDhd = StandIn<MockDhdState>;
 
 }  // namespace palpate::support
 

@@ -1,22 +1,42 @@
 // The wrist of a Force Dimension device: torque, centring, and how it fails.
-#include <limits>
-
 #include "devices/forcedimension/forcedimension_fixture.hpp"
+#include "devices/vendor_wrist_cases.hpp"
 
 namespace palpate::devices {
 namespace {
 
 class ForceDimensionWrist : public ForceDimension {
   protected:
-    void SetUp() override { plug_in(MOCK_DRD); }
-    void plug_in(const char* library) {
-        use(library);
+    ForceDimensionWrist() { plug_in(MOCK_DRD); }
+    void plug_in(const char* path) {
+        use(path);
         with([](auto& dhd) {
             dhd.type = 104;
             dhd.active_wrist = true;
         });
     }
+    // For cases that all vendors share.
+    double largest_torque() const {
+        return with([](auto& dhd) { return 1000 * dhd.largest_torque; });
+    }
+    void take_motors_away() {
+        with([](auto& dhd) { dhd.type = 35; });  // though its library has an active one
+    }
+    std::string fail_torque(bool on) {
+        with([&](auto& dhd) { dhd.torque_error = on ? 8 : 0; });
+        return "geometry error";
+    }
+    void tell_rotation_with(double one) {
+        with([&](auto& dhd) { dhd.frame[1][1] = one; });
+    }
+    void tell_position(const Vec3& mm) {
+        with([&](auto& dhd) { dhd.position = {1e-3 * mm[2], 1e-3 * mm[0], 1e-3 * mm[1]}; });
+    }
+    void slow_down(std::chrono::milliseconds time) {
+        with([&](auto& dhd) { dhd.while_reading = [time] { pass(time); }; });
+    }
 };
+INSTANTIATE_TYPED_TEST_SUITE_P(ForceDimension, VendorWrist, ForceDimensionWrist);
 
 TEST_F(ForceDimensionWrist, a_model_with_motors_at_its_wrist_says_so_and_any_other_does_not) {
     const DeviceInfo sigma = open()->info();
@@ -35,8 +55,8 @@ TEST_F(ForceDimensionWrist, a_model_with_motors_at_its_wrist_says_so_and_any_oth
 }
 
 TEST_F(ForceDimensionWrist, a_torque_arrives_in_newton_metres_in_the_axes_it_was_written_in) {
-    for (const char* library : {MOCK_DRD, MOCK_DHD}) {  // each has another function for it
-        plug_in(library);
+    for (const char* path : {MOCK_DRD, MOCK_DHD}) {  // each has another function for it
+        plug_in(path);
         const auto device = open();
         EXPECT_TRUE(turns(*device, Vec3(-30, 50, 7)));
         EXPECT_EQ(with([](auto& dhd) { return dhd.wrong_id; }), 0);
@@ -45,77 +65,12 @@ TEST_F(ForceDimensionWrist, a_torque_arrives_in_newton_metres_in_the_axes_it_was
     }
 }
 
-TEST_F(ForceDimensionWrist, a_torque_beyond_the_devices_own_is_cut_to_it) {
-    const auto device = open();
-    const Vec3 cut = Vec3(0.6, 0, 0.8) * 0.2;
-    EXPECT_TRUE(within(
-        felt, [&] { return (torque() - cut).norm() < 1e-12; },
-        [&] {
-            device->write({Vec3::Zero(), Vec3(6000, 0, 8000)}, 0);
-        }));
-    EXPECT_LE(with([](auto& dhd) { return dhd.largest_torque; }), 0.2 + 1e-12);
-}
-
-TEST_F(ForceDimensionWrist, a_passive_wrist_is_never_sent_a_torque) {
-    with([](auto& dhd) { dhd.type = 35; });  // though its library has an active one
-    const auto device = open();
-    EXPECT_TRUE(within(
-        felt, [&] { return (force() - Vec3(1, 2, 0)).norm() < 1e-12; },
-        [&] {
-            device->write({Vec3(1, 2, 0), Vec3(50, 0, 0)}, 0);
-        }));
-    EXPECT_EQ(with([](auto& dhd) { return dhd.largest_torque; }), 0);
-}
-
-TEST_F(ForceDimensionWrist, force_and_torque_go_to_zero_when_stopped_silent_or_closed) {
-    auto device = open();
-    ASSERT_TRUE(turns(*device));
-    EXPECT_TRUE(goes_to_zero_in_silence());
-    ASSERT_TRUE(turns(*device));
-    device->stop();
-    EXPECT_TRUE(stays_at_zero(*device));
-    device.reset();
-    device = open();
-    ASSERT_TRUE(turns(*device));
-    device.reset();
-    EXPECT_EQ(with([](auto& dhd) { return dhd.force_at_stop; }), (std::array<double, 3>{}));
-    EXPECT_TRUE(torque().isZero(0));
-}
-
-TEST_F(ForceDimensionWrist, a_failing_torque_call_is_a_fault_that_leaves_no_force) {
+TEST_F(ForceDimensionWrist, is_lost_where_a_call_for_torque_or_orientation_finds_no_device) {
     const auto device = open();
     ASSERT_TRUE(turns(*device));
-    with([](auto& dhd) { dhd.torque_error = 8; });
-    ASSERT_TRUE(becomes(*device, DeviceStatus::fault));
-    EXPECT_TRUE(says(*device, "geometry error"));
-    EXPECT_TRUE(stays_at_zero(*device));
     with([](auto& dhd) { dhd.torque_error = 2; });
     EXPECT_TRUE(becomes(*device, DeviceStatus::lost));
     with([](auto& dhd) { dhd.torque_error = 0; });
-    EXPECT_TRUE(turns(*device));
-    EXPECT_TRUE(has_no_problem(*device));
-}
-
-TEST_F(ForceDimensionWrist, an_orientation_that_is_no_rotation_is_a_fault_and_never_told) {
-    const auto device = open();
-    const auto set = [&](double a, double b, double c) {
-        with([&](auto& dhd) {
-            dhd.frame[0][0] = a;
-            dhd.frame[1][1] = b;
-            dhd.frame[2][2] = c;
-        });
-    };
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    for (const Vec3& wrong : {Vec3(nan, 1, 1), Vec3(1, 1, -1), Vec3(1.1, 1, 1), Vec3(0, 0, 0)}) {
-        set(1, 1, 1);
-        ASSERT_TRUE(turns(*device));
-        set(wrong[0], wrong[1], wrong[2]);
-        ASSERT_TRUE(becomes(*device, DeviceStatus::fault));
-        EXPECT_TRUE(says(*device, "an orientation that cannot be"));
-        EXPECT_EQ(device->read(0).orientation, Mat3(Mat3::Identity()));
-        EXPECT_TRUE(stays_at_zero(*device));
-    }
-    set(1, 1, 1);
     ASSERT_TRUE(turns(*device));
     with([](auto& dhd) { dhd.orientation_error = 7; });
     EXPECT_TRUE(becomes(*device, DeviceStatus::lost));

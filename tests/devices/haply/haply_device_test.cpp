@@ -168,7 +168,7 @@ TEST_F(HaplyTest, what_opening_needs_is_said) {
     EXPECT_NE(refusal("force_key=force").find("values, vector"), std::string::npos);
     EXPECT_NE(refusal("timeout=0").find("0.1 to 5"), std::string::npos);
     EXPECT_NE(refusal("colour=red").find("no option 'colour'"), std::string::npos);
-    EXPECT_THROW(open_haply(parse_device("haply:port=1.5"), any_scene()), std::invalid_argument);
+    EXPECT_THROW(open_device(parse_device("haply:port=1.5"), any_scene()), std::invalid_argument);
 
     const std::int64_t begun = virtual_now();
     service.greet(snapshot({}));
@@ -191,7 +191,7 @@ TEST_F(HaplyTest, a_service_that_is_just_starting_gets_a_second) {
 
 TEST_F(HaplyTest, a_host_that_is_not_there_is_said_with_what_to_give) {
     try {
-        open_haply(parse_device("haply:host=.."), any_scene());
+        open_device(parse_device("haply:host=.."), any_scene());
         ADD_FAILURE() << "no host has this name";
     } catch (const DeviceError& error) {
         EXPECT_NE(std::string(error.what()).find("no host '..'"), std::string::npos);

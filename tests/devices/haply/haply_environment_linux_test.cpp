@@ -2,7 +2,6 @@
 #include <cstdlib>
 
 #include "devices/haply/haply_fixture.hpp"
-#include "palpate/devices/devices.hpp"
 #include "support/silent_server.hpp"
 
 namespace palpate::devices {
@@ -42,7 +41,7 @@ TEST_F(HaplyEnvironment, a_service_elsewhere_is_found_by_the_environment) {
     EXPECT_EQ(passed_since(begun), 2s);
 
     setenv("HAPLY_WS_PORT", "http", 1);
-    EXPECT_NE(find_haply().missing.find("HAPLY_WS_PORT=http"), std::string::npos);
+    EXPECT_NE(haply::find().missing.find("HAPLY_WS_PORT=http"), std::string::npos);
 }
 
 TEST_F(HaplyEnvironment, the_usual_service_is_looked_for_without_a_resolver) {
@@ -77,7 +76,7 @@ TEST_F(HaplyEnvironment, what_waits_for_a_silent_service_ends_when_it_is_told_to
     EXPECT_TRUE(stops([&](const OnProgress& progress) {
         DeviceScene scene = support::any_scene();
         scene.progress = progress;
-        (void)open_haply({"haply", {{"host", "127.0.0.1"}, {"port", port}}}, scene);
+        (void)open_device({"haply", {{"host", "127.0.0.1"}, {"port", port}}}, scene);
     }));
     setenv("HAPLY_WS_PORT", port.c_str(), 1);
     EXPECT_TRUE(stops([](const OnProgress& progress) { (void)find_devices(progress); }));

@@ -13,6 +13,7 @@
 #include "devices/haply/haply.hpp"
 #include "devices/haply/messages.hpp"
 #include "devices/stepped_device.hpp"
+#include "palpate/devices/devices.hpp"
 
 namespace palpate::devices {
 

@@ -6,6 +6,7 @@
 #include "devices/haply/messages.hpp"
 #include "devices/haply/mock_service.hpp"
 #include "devices/stepped_device.hpp"
+#include "palpate/devices/devices.hpp"
 #include "support/allocation_counter.hpp"
 #include "support/eventually.hpp"
 
@@ -137,9 +138,9 @@ TEST_F(PacedHaply, its_thread_presses_at_4_khz_at_most_connects_again_and_says_g
     std::unique_ptr<Device> device;
     ASSERT_TRUE(comes_true([&] {
         try {
-            device = open_haply(parse_device("haply:host=127.0.0.1,timeout=5,port=" +
-                                             std::to_string(service.port())),
-                                any_scene());
+            device = open_device(parse_device("haply:host=127.0.0.1,timeout=5,port=" +
+                                              std::to_string(service.port())),
+                                 any_scene());
         } catch (const DeviceError&) {
         }
         return device != nullptr;

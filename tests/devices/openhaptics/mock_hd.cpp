@@ -11,11 +11,10 @@
 #include <optional>
 #include <thread>
 
-#define MOCK_EXPORT extern "C" __attribute__((visibility("default")))
-
 namespace {
 
 using palpate::support::MockHd;
+using palpate::support::MockHdState;
 
 struct Scheduled {
     unsigned int (*callback)(void*);
@@ -32,8 +31,8 @@ struct ErrorInfo {
 constexpr unsigned int the_device = 7;
 
 // The interface is one of globals: so is this.
-MockHd state;
-std::vector<unsigned int> errors;
+MockHd mock;
+MockHdState& state = mock.state;
 std::vector<Scheduled> scheduled;
 std::optional<std::thread> scheduler;
 std::atomic<bool> running{false};
@@ -44,7 +43,7 @@ unsigned long last_handle = 0;
 
 // The mutex is held by the caller of all of these.
 void complain(unsigned int code) {
-    errors.push_back(code);
+    state.errors.push_back(code);
 }
 void called(const std::string& what) {
     state.calls.push_back(what);
@@ -66,12 +65,12 @@ void drive(const std::array<double, 3>& force, const std::array<double, 3>& torq
 void call_all() {
     std::vector<Scheduled> now;
     {
-        const std::lock_guard lock(state.mutex);
+        const std::lock_guard lock(mock.mutex);
         if (!state.silent) now = scheduled;
     }
     for (const Scheduled& one : now) {
         if (one.callback(one.data) != 0) continue;
-        const std::lock_guard lock(state.mutex);
+        const std::lock_guard lock(mock.mutex);
         std::erase_if(scheduled, [&](const Scheduled& s) { return s.handle == one.handle; });
     }
 }
@@ -88,58 +87,16 @@ void loop() {
 }  // namespace
 
 MOCK_EXPORT MockHd* mock_hd() {
-    return &state;
+    return &mock;
 }
 
 MOCK_EXPORT void mock_hd_frame() {
     if (running && !scheduler) call_all();
 }
 
-MOCK_EXPORT void mock_hd_reset() {
-    const MockHd fresh;
-    const std::lock_guard lock(state.mutex);
-    state.position = fresh.position;
-    state.transform = fresh.transform;
-    state.buttons = 0;
-    state.most_force = fresh.most_force;
-    state.continuous_force = fresh.continuous_force;
-    state.temperature = fresh.temperature;
-    state.stiffness = fresh.stiffness;
-    state.workspace = fresh.workspace;
-    state.rate = fresh.rate;
-    state.input_dof = fresh.input_dof;
-    state.output_dof = fresh.output_dof;
-    state.most_torque = fresh.most_torque;
-    state.torque_error = 0;
-    state.temperature_error = 0;
-    state.torque = {};
-    state.largest_torque = 0;
-    state.calibration = fresh.calibration;
-    state.calibration_style = fresh.calibration_style;
-    state.only_name = fresh.only_name;
-    state.has_no_licence = false;
-    state.refuses_null = state.refuses_all = state.refuses_start = false;
-    state.update_helps = true;
-    state.every_error = state.next_error = 0;
-    state.while_beginning = state.while_opening = nullptr;
-    state.silent = state.no_position = state.own_thread = false;
-    state.force = {};
-    state.largest_force = 0;
-    state.calls.clear();
-    state.frames = 0;
-    state.force_at_stop = fresh.force_at_stop;
-    state.outside = 0;
-    errors.clear();
-}
-
 MOCK_EXPORT unsigned int hdInitDevice(const char* name) {
-    std::function<void()> meanwhile;
-    {
-        const std::lock_guard lock(state.mutex);
-        meanwhile = state.while_opening;
-    }
-    if (meanwhile) meanwhile();
-    const std::lock_guard lock(state.mutex);
+    mock.meanwhile(&MockHdState::while_opening);
+    const std::lock_guard lock(mock.mutex);
     called("init " + std::string(name ? name : "NULL"));
     if (state.has_no_licence) return complain(0x600), 0xFFFFFFFF;
     const bool refused =
@@ -153,32 +110,30 @@ MOCK_EXPORT unsigned int hdInitDevice(const char* name) {
 }
 
 MOCK_EXPORT void hdDisableDevice(unsigned int device) {
-    const std::lock_guard lock(state.mutex);
+    const std::lock_guard lock(mock.mutex);
     called("disable device");
     if (device != the_device || !state.device_open) complain(0x104);
     state.device_open = false;
 }
 
 MOCK_EXPORT void hdMakeCurrentDevice(unsigned int device) {
-    const std::lock_guard lock(state.mutex);
+    const std::lock_guard lock(mock.mutex);
     if (device != the_device || !state.device_open) complain(0x104);
 }
 
 MOCK_EXPORT void hdBeginFrame(unsigned int device) {
-    std::function<void()> meanwhile;
     {
-        const std::lock_guard lock(state.mutex);
+        const std::lock_guard lock(mock.mutex);
         if (device != the_device || !state.device_open) complain(0x104);
         if (in_frame) complain(0x400);
         in_frame = true;
         frame_force = frame_torque = {};
-        meanwhile = state.while_beginning;
     }
-    if (meanwhile) meanwhile();
+    mock.meanwhile(&MockHdState::while_beginning);
 }
 
 MOCK_EXPORT void hdEndFrame(unsigned int device) {
-    const std::lock_guard lock(state.mutex);
+    const std::lock_guard lock(mock.mutex);
     if (device != the_device) complain(0x104);
     if (!in_frame) complain(0x401);
     in_frame = false;
@@ -193,10 +148,10 @@ MOCK_EXPORT void hdEndFrame(unsigned int device) {
 }
 
 MOCK_EXPORT ErrorInfo hdGetError() {
-    const std::lock_guard lock(state.mutex);
-    if (errors.empty()) return {0, 0, 0};
-    const unsigned int code = errors.back();
-    errors.pop_back();
+    const std::lock_guard lock(mock.mutex);
+    if (state.errors.empty()) return {0, 0, 0};
+    const unsigned int code = state.errors.back();
+    state.errors.pop_back();
     return {code, -1, the_device};
 }
 
@@ -218,14 +173,14 @@ MOCK_EXPORT const char* hdGetErrorString(unsigned int code) {
 }
 
 MOCK_EXPORT void hdEnable(unsigned int capability) {
-    const std::lock_guard lock(state.mutex);
+    const std::lock_guard lock(mock.mutex);
     called("enable");
     if (capability != 0x4000) return complain(0x100);
     force_output = true;
 }
 
 MOCK_EXPORT void hdDisable(unsigned int capability) {
-    const std::lock_guard lock(state.mutex);
+    const std::lock_guard lock(mock.mutex);
     called("disable");
     if (capability != 0x4000) return complain(0x100);
     force_output = false;
@@ -233,7 +188,7 @@ MOCK_EXPORT void hdDisable(unsigned int capability) {
 }
 
 MOCK_EXPORT void hdGetDoublev(unsigned int parameter, double* value) {
-    const std::lock_guard lock(state.mutex);
+    const std::lock_guard lock(mock.mutex);
     switch (parameter) {
         case 0x2050:
             want_frame();
@@ -272,7 +227,7 @@ MOCK_EXPORT void hdGetDoublev(unsigned int parameter, double* value) {
 }
 
 MOCK_EXPORT void hdGetIntegerv(unsigned int parameter, int* value) {
-    const std::lock_guard lock(state.mutex);
+    const std::lock_guard lock(mock.mutex);
     switch (parameter) {
         case 0x2000:
             want_frame();
@@ -301,7 +256,7 @@ MOCK_EXPORT const char* hdGetString(unsigned int parameter) {
 }
 
 MOCK_EXPORT void hdSetDoublev(unsigned int parameter, const double* value) {
-    const std::lock_guard lock(state.mutex);
+    const std::lock_guard lock(mock.mutex);
     want_frame();
     if (parameter == 0x2701 && state.output_dof >= 6) {
         if (state.torque_error) return complain(state.torque_error);
@@ -313,19 +268,19 @@ MOCK_EXPORT void hdSetDoublev(unsigned int parameter, const double* value) {
 }
 
 MOCK_EXPORT unsigned int hdCheckCalibration() {
-    const std::lock_guard lock(state.mutex);
+    const std::lock_guard lock(mock.mutex);
     return state.calibration;
 }
 
 MOCK_EXPORT void hdUpdateCalibration(unsigned int style) {
-    const std::lock_guard lock(state.mutex);
+    const std::lock_guard lock(mock.mutex);
     called("update calibration " + std::to_string(style));
     if (!(style & static_cast<unsigned int>(state.calibration_style))) return complain(0x102);
     if (state.update_helps) state.calibration = 0x5000;
 }
 
 MOCK_EXPORT void hdStartScheduler() {
-    const std::lock_guard lock(state.mutex);
+    const std::lock_guard lock(mock.mutex);
     called("start scheduler");
     if (state.refuses_start) return complain(0x304);
     if (running.exchange(true)) return;
@@ -334,7 +289,7 @@ MOCK_EXPORT void hdStartScheduler() {
 
 MOCK_EXPORT void hdStopScheduler() {
     {
-        const std::lock_guard lock(state.mutex);
+        const std::lock_guard lock(mock.mutex);
         called("stop scheduler");
         state.force_at_stop = state.force;
     }
@@ -345,7 +300,7 @@ MOCK_EXPORT void hdStopScheduler() {
 
 MOCK_EXPORT unsigned long hdScheduleAsynchronous(unsigned int (*callback)(void*), void* data,
                                                  unsigned short priority) {
-    const std::lock_guard lock(state.mutex);
+    const std::lock_guard lock(mock.mutex);
     called("schedule " + std::to_string(priority));
     scheduled.push_back({callback, data, ++last_handle});
     return last_handle;
@@ -353,7 +308,7 @@ MOCK_EXPORT unsigned long hdScheduleAsynchronous(unsigned int (*callback)(void*)
 
 #ifndef MOCK_HD_LACKS_UNSCHEDULE
 MOCK_EXPORT void hdUnschedule(unsigned long handle) {
-    const std::lock_guard lock(state.mutex);
+    const std::lock_guard lock(mock.mutex);
     called("unschedule");
     std::erase_if(scheduled, [&](const Scheduled& one) { return one.handle == handle; });
 }

@@ -3,16 +3,14 @@
 
 #include <array>
 #include <functional>
-#include <mutex>
 #include <string>
 #include <vector>
 
+#include "devices/stand_in.hpp"
+
 namespace palpate::support {
 
-/// Lock `mutex` for everything.
-struct MockHd {
-    std::mutex mutex;
-
+struct MockHdState {
     // The device.
     std::array<double, 3> position{};  // [mm]
     std::array<double, 16> transform{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
@@ -53,8 +51,11 @@ struct MockHd {
     long frames = 0;
     std::array<double, 3> force_at_stop{1, 1, 1};  // as applied when the scheduler was stopped
     bool device_open = false;
-    int outside = 0;  // calls that want a frame, without one
+    int outside = 0;                   // calls that want a frame, without one
+    std::vector<unsigned int> errors;  // not asked for yet
 };
+
+using MockHd = StandIn<MockHdState>;
 
 }  // namespace palpate::support
 
@@ -62,5 +63,3 @@ struct MockHd {
 extern "C" palpate::support::MockHd* mock_hd();
 /// One round of the servo loop, where that has no thread of its own.
 extern "C" void mock_hd_frame();
-/// A device that was just plugged in: all as at the start.
-extern "C" void mock_hd_reset();

@@ -1,116 +1,55 @@
 // The device `openhaptics` against a stand-in for the vendor's library.
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <utility>
 
-#include "devices/blocked_driver.hpp"
-#include "devices/claim.hpp"
 #include "devices/openhaptics/openhaptics_fixture.hpp"
-#include "support/eventually.hpp"
+#include "devices/vendor_cases.hpp"
 
 namespace palpate::devices {
 namespace {
 
-TEST_F(OpenHaptics, a_missing_library_is_named_with_what_to_install) {
-    const auto open_nothing = [] {
-        open_openhaptics(parse_device("openhaptics:library=/nowhere/libHD.so"), any_scene());
-    };
-    const std::string message = message_of<DeviceError>(open_nothing);
-    EXPECT_TRUE(contains(message, "device openhaptics: ")) << message;
-    EXPECT_TRUE(contains(message, "/nowhere/libHD.so")) << message;
-    EXPECT_TRUE(contains(message, "install 3D Systems' OpenHaptics")) << message;
-    EXPECT_TRUE(contains(message, "library=PATH")) << message;
-    const DeviceFinding finding = openhaptics::find("/nowhere/libHD.so");
-    EXPECT_FALSE(finding.found);
-    EXPECT_TRUE(contains(finding.missing, "/nowhere/libHD.so")) << finding.missing;
-}
-
-TEST_F(OpenHaptics, looking_for_it_opens_no_device) {
-    const DeviceFinding finding = openhaptics::find(MOCK_HD);
-    EXPECT_TRUE(finding.found) << finding.missing;
-    EXPECT_TRUE(contains(finding.what, name_of(MOCK_HD))) << finding.what;
-    EXPECT_TRUE(with([](MockHd& hd) { return hd.calls.empty(); }));
-    const DeviceFinding usual = find_openhaptics();
-    EXPECT_EQ(usual.name, "openhaptics");
-    EXPECT_NE(usual.found, usual.what.empty());
-    EXPECT_EQ(usual.found, usual.missing.empty());
-}
-
-TEST_F(OpenHaptics, a_library_without_a_function_that_is_needed_is_refused_by_its_name) {
-    const auto open_lacking = [] {
-        const std::string text = "openhaptics:library=" + std::string(MOCK_HD_LACKING);
-        open_openhaptics(parse_device(text), any_scene());
-    };
-    const std::string message = message_of<DeviceError>(open_lacking);
-    EXPECT_TRUE(contains(message, "hdUnschedule")) << message;
-    EXPECT_TRUE(contains(message, name_of(MOCK_HD_LACKING))) << message;
-    EXPECT_FALSE(openhaptics::find(MOCK_HD_LACKING).found);
-}
-
 TEST_F(OpenHaptics, an_option_that_it_has_not_is_refused) {
-    const std::string message = message_of<std::invalid_argument>([] { open(",speed=1"); });
+    const std::string message = message_of<std::invalid_argument>([&] { open(",speed=1"); });
     EXPECT_TRUE(contains(message, "no option 'speed': use one of name, reset, library")) << message;
 }
 
 TEST_F(OpenHaptics, a_driver_without_a_device_is_told_with_its_words_and_can_be_asked_again) {
-    with([](MockHd& hd) { hd.refuses_all = true; });
+    with([](auto& hd) { hd.refuses_all = true; });
     const std::string message = refusal();
     EXPECT_TRUE(contains(message, "NULL: Device fault (0x300)")) << message;
     EXPECT_TRUE(contains(message, "'Default PHANToM': Device fault")) << message;
     EXPECT_TRUE(contains(message, "name=NAME")) << message;
-    with([](MockHd& hd) { hd.refuses_all = false; });
+    with([](auto& hd) { hd.refuses_all = false; });
     EXPECT_NO_THROW(open());
 }
 
 TEST_F(OpenHaptics, where_the_default_device_fails_its_usual_name_is_tried) {
-    with([](MockHd& hd) { hd.refuses_null = true; });
+    with([](auto& hd) { hd.refuses_null = true; });
     EXPECT_NO_THROW(open());
-    EXPECT_EQ(with([](MockHd& hd) { return hd.calls.at(2); }), "init Default PHANToM");
+    EXPECT_EQ(with([](auto& hd) { return hd.calls.at(2); }), "init Default PHANToM");
 }
 
 TEST_F(OpenHaptics, a_name_that_is_given_is_the_only_one_tried) {
     EXPECT_TRUE(contains(refusal(",name=Left Device"), "device 'Left Device': "));
-    EXPECT_EQ(with([](MockHd& hd) { return hd.calls.size(); }), 1U);
+    EXPECT_EQ(with([](auto& hd) { return hd.calls.size(); }), 1U);
     EXPECT_NO_THROW(open(",name=Default PHANToM"));
-    with([](MockHd& hd) { hd.refuses_null = true, hd.only_name = "Default Device"; });
+    with([](auto& hd) { hd.refuses_null = true, hd.only_name = "Default Device"; });
     EXPECT_NO_THROW(open());
 }
 
 TEST_F(OpenHaptics, a_servo_loop_that_does_not_start_gives_the_device_back) {
-    with([](MockHd& hd) { hd.refuses_start = true; });
+    with([](auto& hd) { hd.refuses_start = true; });
     const std::string message = refusal();
     EXPECT_TRUE(contains(message, "starting the driver's servo loop")) << message;
-    EXPECT_FALSE(with([](MockHd& hd) { return hd.device_open; }));
-    with([](MockHd& hd) { hd.refuses_start = false; });
+    EXPECT_FALSE(with([](auto& hd) { return hd.device_open; }));
+    with([](auto& hd) { hd.refuses_start = false; });
     EXPECT_NO_THROW(open());
 }
 
-TEST_F(OpenHaptics, a_second_one_is_refused_while_the_first_is_open) {
-    const auto device = open();
-    EXPECT_TRUE(contains(refusal(), "serves another hand"));
-    EXPECT_TRUE(becomes(*device, DeviceStatus::ready));
-}
-
-TEST_F(OpenHaptics, an_opening_that_is_stopped_is_left_alone_and_closed_at_its_end) {
-    support::expect_a_stopped_opening_is_left_alone(
-        [&](const OnProgress& progress) { return open("", 1000, progress); },
-        [&](const auto& block) { with([&](MockHd& hd) { hd.while_opening = block; }); });
-    EXPECT_FALSE(with([](MockHd& hd) { return hd.device_open; }));
-}
-
-TEST_F(OpenHaptics, a_hand_lets_go_of_it_before_it_is_opened_again) {
-    const int hand = 0;
-    std::unique_ptr<Device> device;
-    const OpenedBy opened_by(&hand, [&] { device.reset(); });
-    device = open();
-    device = open();
-    EXPECT_TRUE(becomes(*device, DeviceStatus::ready));
-}
-
 TEST_F(OpenHaptics, what_it_can_do_is_read_from_the_device) {
-    with([](MockHd& hd) {
+    with([](auto& hd) {
         hd.most_force = 7.9;
         hd.stiffness = 1.5;
         hd.rate = 500;
@@ -128,7 +67,7 @@ TEST_F(OpenHaptics, what_it_can_do_is_read_from_the_device) {
 }
 
 TEST_F(OpenHaptics, figures_that_cannot_be_are_replaced_by_those_of_the_smallest_device) {
-    with([](MockHd& hd) {
+    with([](auto& hd) {
         hd.most_force = std::numeric_limits<double>::infinity();
         hd.stiffness = -1;
         hd.rate = 0;
@@ -143,7 +82,7 @@ TEST_F(OpenHaptics, figures_that_cannot_be_are_replaced_by_those_of_the_smallest
 }
 
 TEST_F(OpenHaptics, position_orientation_and_buttons_come_in_the_axes_of_the_device) {
-    with([](MockHd& hd) {
+    with([](auto& hd) {
         hd.position = {10, -20, 30};
         hd.transform = {0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 10, -20, 30, 1};
         hd.buttons = 2;
@@ -157,93 +96,49 @@ TEST_F(OpenHaptics, position_orientation_and_buttons_come_in_the_axes_of_the_dev
     EXPECT_EQ(reading.orientation.col(2), Vec3(1, 0, 0));
     EXPECT_EQ(reading.buttons, 2U);
     EXPECT_TRUE(has_no_problem(*device));
-    with([](MockHd& hd) { hd.position = {11, 0, 0}; });
+    with([](auto& hd) { hd.position = {11, 0, 0}; });
     step();
     EXPECT_EQ(device->read(0).position, Vec3(11, 0, 0));
-    EXPECT_EQ(with([](MockHd& hd) { return hd.outside; }), 0);
-}
-
-TEST_F(OpenHaptics, a_force_arrives_in_newtons_in_the_axes_it_was_written_in) {
-    const auto device = open();
-    EXPECT_TRUE(presses(*device, Vec3(0.5, -1, 2)));
-    EXPECT_TRUE(presses(*device, Vec3(-2, 0.25, -0.125)));
+    EXPECT_EQ(with([](auto& hd) { return hd.outside; }), 0);
 }
 
 TEST_F(OpenHaptics, a_force_beyond_the_devices_own_is_cut_to_it) {
     const auto device = open();
-    const Vec3 cut = Vec3(0.6, 0.8, 0) * 3.3;
-    EXPECT_TRUE(within(
-        soon, [&] { return (force() - cut).norm() < 1e-12; },
-        [&] { device->write({Vec3(30, 40, 0)}, 0); }));
-    EXPECT_LE(with([](MockHd& hd) { return hd.largest_force; }), 3.3 + 1e-12);
-}
-
-TEST_F(OpenHaptics, a_force_that_is_no_number_is_none) {
-    const auto device = open();
-    ASSERT_TRUE(presses(*device, Vec3(1, 0, 0)));
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    device->write({Vec3(1, nan, 0)}, 0);
-    step();
-    EXPECT_TRUE(force().isZero(0));
-}
-
-TEST_F(OpenHaptics, the_force_goes_to_zero_when_the_servo_falls_silent) {
-    const auto device = open();
-    ASSERT_TRUE(presses(*device, Vec3(1, 2, 0)));
-    EXPECT_TRUE(goes_to_zero_in_silence());
-    EXPECT_TRUE(becomes(*device, DeviceStatus::ready));
-    EXPECT_TRUE(presses(*device, Vec3(1, 2, 0)));
-}
-
-TEST_F(OpenHaptics, the_force_goes_to_zero_for_good_when_it_is_stopped) {
-    const auto device = open();
-    ASSERT_TRUE(presses(*device, Vec3(1, 2, 0)));
-    device->stop();
-    EXPECT_TRUE(device->is_stopping());
-    EXPECT_TRUE(stays_at_zero(*device));
-    EXPECT_FALSE(device->is_stopping());
-    EXPECT_TRUE(becomes(*device, DeviceStatus::ready));
+    EXPECT_TRUE(is_given(*device, {Vec3(30, 40, 0)}, {Vec3(0.6, 0.8, 0) * 3.3}, felt));
+    EXPECT_LE(with([](auto& hd) { return hd.largest_force; }), 3.3 + 1e-12);
 }
 
 TEST_F(OpenHaptics, it_is_closed_in_order_and_its_last_force_is_zero) {
     auto device = open();
-    ASSERT_TRUE(presses(*device, Vec3(1, 2, 0)));
+    ASSERT_TRUE(presses(*device));
     device.reset();
-    EXPECT_EQ(with([](MockHd& hd) { return hd.force_at_stop; }), (std::array<double, 3>{}));
-    const auto calls = with([](MockHd& hd) { return hd.calls; });
+    EXPECT_EQ(with([](auto& hd) { return hd.force_at_stop; }), (std::array<double, 3>{}));
+    const auto calls = with([](auto& hd) { return hd.calls; });
     const std::vector<std::string> expected{"init NULL",       "enable",         "schedule 65535",
                                             "start scheduler", "stop scheduler", "unschedule",
                                             "disable",         "disable device"};
     EXPECT_EQ(calls, expected);
-    const long frames = with([](MockHd& hd) { return hd.frames; });
+    const long frames = with([](auto& hd) { return hd.frames; });
     for (int i = 0; i < 20; ++i) step();
-    EXPECT_EQ(with([](MockHd& hd) { return hd.frames; }), frames);
-}
-
-TEST_F(OpenHaptics, can_be_opened_again_in_the_same_process) {
-    for (int i = 0; i < 3; ++i) {
-        const auto device = open();
-        EXPECT_TRUE(presses(*device, Vec3(1, i, 0)));
-    }
+    EXPECT_EQ(with([](auto& hd) { return hd.frames; }), frames);
 }
 
 TEST_F(OpenHaptics, an_uncalibrated_device_has_no_force_and_says_what_to_do) {
-    with([](MockHd& hd) { hd.calibration = 0x5002; });
+    with([](auto& hd) { hd.calibration = 0x5002; });
     const auto device = open();
     ASSERT_TRUE(becomes(*device, DeviceStatus::uncalibrated));
     EXPECT_TRUE(contains(device->problem(), "inkwell")) << device->problem();
     EXPECT_TRUE(stays_at_zero(*device));
     // The stylus goes into the well: the driver now wants to be told to take that pose.
-    with([](MockHd& hd) { hd.calibration = 0x5001; });
-    EXPECT_TRUE(presses(*device, Vec3(1, 0, 0)));
+    with([](auto& hd) { hd.calibration = 0x5001; });
+    EXPECT_TRUE(presses(*device));
     EXPECT_TRUE(has_no_problem(*device));
-    const auto calls = with([](MockHd& hd) { return hd.calls; });
-    EXPECT_EQ(std::count(calls.begin(), calls.end(), "update calibration 4"), 1);
+    EXPECT_EQ(called("update calibration 4"), 1);
 }
 
 TEST_F(OpenHaptics,
        a_calibration_that_the_driver_does_not_finish_stays_one_and_is_not_asked_often) {
-    with([](MockHd& hd) {
+    with([](auto& hd) {
         hd.calibration = 0x5001;
         hd.calibration_style = 2;
         hd.update_helps = false;
@@ -252,17 +147,13 @@ TEST_F(OpenHaptics,
     ASSERT_TRUE(becomes(*device, DeviceStatus::uncalibrated));
     EXPECT_TRUE(contains(device->problem(), "bringing its calibration up to date"));
     EXPECT_TRUE(stays_at_zero(*device));
-    const auto updates = [&] {
-        const auto calls = with([](MockHd& hd) { return hd.calls; });
-        return std::count(calls.begin(), calls.end(), "update calibration 2");
-    };
-    EXPECT_EQ(updates(), 1);
+    EXPECT_EQ(called("update calibration 2"), 1);
     EXPECT_TRUE(throughout(3s, [&] { return force().isZero(0); }));
-    EXPECT_EQ(updates(), 4);  // once per second
+    EXPECT_EQ(called("update calibration 2"), 4);  // once per second
 }
 
 TEST_F(OpenHaptics, encoders_are_zeroed_only_when_asked_to) {
-    with([](MockHd& hd) {
+    with([](auto& hd) {
         hd.calibration = 0x5001;
         hd.calibration_style = 1;
     });
@@ -273,31 +164,19 @@ TEST_F(OpenHaptics, encoders_are_zeroed_only_when_asked_to) {
         EXPECT_TRUE(stays_at_zero(*device));
     }
     const auto device = open(",reset=yes");
-    EXPECT_TRUE(presses(*device, Vec3(1, 0, 0)));
-    const auto calls = with([](MockHd& hd) { return hd.calls; });
-    EXPECT_EQ(std::count(calls.begin(), calls.end(), "update calibration 1"), 1);
+    EXPECT_TRUE(presses(*device));
+    EXPECT_EQ(called("update calibration 1"), 1);
 }
 
 TEST_F(OpenHaptics, zeroing_encoders_that_cannot_be_zeroed_is_refused) {
     EXPECT_TRUE(contains(refusal(",reset=yes"), "cannot be zeroed"));
-    EXPECT_FALSE(with([](MockHd& hd) { return hd.device_open; }));
-}
-
-TEST_F(OpenHaptics, a_broken_connection_in_contact_is_lost_for_good_without_force) {
-    const auto device = open();
-    ASSERT_TRUE(presses(*device, Vec3(1, 2, 0)));
-    with([](MockHd& hd) { hd.next_error = 0x302; });
-    ASSERT_TRUE(becomes(*device, DeviceStatus::lost));
-    EXPECT_TRUE(contains(device->problem(), "Communication error (0x302)")) << device->problem();
-    EXPECT_TRUE(contains(device->problem(), "check cable")) << device->problem();
-    EXPECT_TRUE(stays_at_zero(*device));
-    EXPECT_EQ(device->read(0).status, DeviceStatus::lost);
+    EXPECT_FALSE(with([](auto& hd) { return hd.device_open; }));
 }
 
 TEST_F(OpenHaptics, a_fault_of_the_device_is_one_for_good_without_force) {
     const auto device = open();
-    ASSERT_TRUE(presses(*device, Vec3(1, 2, 0)));
-    with([](MockHd& hd) { hd.next_error = 0x300; });
+    ASSERT_TRUE(presses(*device));
+    with([](auto& hd) { hd.next_error = 0x300; });
     ASSERT_TRUE(becomes(*device, DeviceStatus::fault));
     EXPECT_TRUE(contains(device->problem(), "Device fault (0x300)")) << device->problem();
     EXPECT_TRUE(stays_at_zero(*device));
@@ -306,43 +185,43 @@ TEST_F(OpenHaptics, a_fault_of_the_device_is_one_for_good_without_force) {
 
 TEST_F(OpenHaptics, warm_motors_get_no_force_until_they_have_cooled) {
     const auto device = open();
-    ASSERT_TRUE(presses(*device, Vec3(1, 2, 0)));
-    with([](MockHd& hd) { hd.every_error = 0x200; });
+    ASSERT_TRUE(presses(*device));
+    with([](auto& hd) { hd.every_error = 0x200; });
     ASSERT_TRUE(becomes(*device, DeviceStatus::fault));
     EXPECT_TRUE(contains(device->problem(), "Warm motors (0x200)")) << device->problem();
     EXPECT_TRUE(contains(device->problem(), "cooled")) << device->problem();
     EXPECT_TRUE(stays_at_zero(*device));
-    with([](MockHd& hd) { hd.every_error = 0; });
+    with([](auto& hd) { hd.every_error = 0; });
     // A second after the last frame that reported it.
     EXPECT_TRUE(throughout(
         998ms, [&] { return device->read(0).status == DeviceStatus::fault && is_zero(); },
         [&] { device->write({Vec3(1, 2, 0)}, 0); }));
     EXPECT_TRUE(becomes(*device, DeviceStatus::ready));
-    EXPECT_TRUE(presses(*device, Vec3(1, 2, 0)));
+    EXPECT_TRUE(presses(*device));
     EXPECT_TRUE(has_no_problem(*device));
 }
 
 TEST_F(OpenHaptics, an_error_that_ends_the_drivers_loop_ends_the_session) {
     for (const unsigned int ending : {0x304U, 0x500U, 0x501U}) {
         const auto device = open();
-        ASSERT_TRUE(presses(*device, Vec3(1, 2, 0)));
-        with([&](MockHd& hd) { hd.next_error = ending; });
+        ASSERT_TRUE(presses(*device));
+        with([&](auto& hd) { hd.next_error = ending; });
         ASSERT_TRUE(becomes(*device, DeviceStatus::lost));
         EXPECT_TRUE(contains(device->problem(), "servo loop has ended: start again"))
             << device->problem();
         EXPECT_TRUE(stays_at_zero(*device));
-        with([](MockHd& hd) { hd.silent = false; });
+        with([](auto& hd) { hd.silent = false; });
         EXPECT_FALSE(within(2s, [&] { return device->read(0).status != DeviceStatus::lost; }));
     }
 }
 
 TEST_F(OpenHaptics, a_missing_licence_is_told_with_what_to_do) {
-    with([](MockHd& hd) { hd.has_no_licence = true; });
+    with([](auto& hd) { hd.has_no_licence = true; });
     EXPECT_TRUE(contains(refusal(), "License Manager"));
-    with([](MockHd& hd) { hd.has_no_licence = false; });
+    with([](auto& hd) { hd.has_no_licence = false; });
     const auto device = open();
-    ASSERT_TRUE(presses(*device, Vec3(1, 2, 0)));
-    with([](MockHd& hd) { hd.next_error = 0x600; });
+    ASSERT_TRUE(presses(*device));
+    with([](auto& hd) { hd.next_error = 0x600; });
     ASSERT_TRUE(becomes(*device, DeviceStatus::fault));
     EXPECT_TRUE(contains(device->problem(), "License Manager")) << device->problem();
     EXPECT_TRUE(stays_at_zero(*device));
@@ -367,7 +246,7 @@ TEST_F(OpenHapticsMotors, that_are_warm_are_asked_for_less_until_the_continuous_
                                                {0.9, 0.88},
                                                {0.1, 3.3},
                                                {std::nan(""), 0.88}}) {
-        with([warm = temperature](MockHd& hd) { hd.temperature = warm; });
+        with([warm = temperature](auto& hd) { hd.temperature = warm; });
         EXPECT_NEAR(after(150ms, 3.3), newtons, 1e-9);
         EXPECT_EQ(contains(device_->problem(), "motors are warm"), newtons < 3.3);
         EXPECT_EQ(device_->read(0).status, DeviceStatus::ready);
@@ -375,12 +254,12 @@ TEST_F(OpenHapticsMotors, that_are_warm_are_asked_for_less_until_the_continuous_
 }
 
 TEST_F(OpenHapticsMotors, whose_temperature_was_lost_to_an_error_are_asked_again) {
-    with([](MockHd& hd) { hd.temperature_error = 0x201; });
+    with([](auto& hd) { hd.temperature_error = 0x201; });
     device_ = open();
     after(150ms, 3.3);
     EXPECT_EQ(device_->read(0).status, DeviceStatus::fault);
     EXPECT_EQ(force().norm(), 0);
-    with([](MockHd& hd) {
+    with([](auto& hd) {
         hd.temperature_error = 0;
         hd.temperature = 0.9;
     });
@@ -389,12 +268,12 @@ TEST_F(OpenHapticsMotors, whose_temperature_was_lost_to_an_error_are_asked_again
 }
 
 TEST_F(OpenHapticsMotors, whose_temperature_no_driver_tells_are_left_to_the_estimate_of_the_servo) {
-    with([](MockHd& hd) { hd.temperature = -1; });
+    with([](auto& hd) { hd.temperature = -1; });
     device_ = open();
     EXPECT_EQ(device_->info().limits.continuous_force, 0.88);
     EXPECT_NEAR(after(10s, 3.3), 3.3, 1e-9);
     EXPECT_EQ(device_->read(0).status, DeviceStatus::ready);
-    with([](MockHd& hd) { hd.continuous_force = 100; });
+    with([](auto& hd) { hd.continuous_force = 100; });
     device_.reset();
     device_ = open();
     EXPECT_DOUBLE_EQ(device_->info().limits.continuous_force, 3.3 / 6);
@@ -403,30 +282,15 @@ TEST_F(OpenHapticsMotors, whose_temperature_no_driver_tells_are_left_to_the_esti
 TEST_F(OpenHaptics, an_error_of_which_the_driver_knows_no_words_is_told_by_its_number) {
     const auto device = open();
     ASSERT_TRUE(becomes(*device, DeviceStatus::ready));
-    with([](MockHd& hd) { hd.every_error = 0x201; });
+    with([](auto& hd) { hd.every_error = 0x201; });
     ASSERT_TRUE(becomes(*device, DeviceStatus::fault));
     EXPECT_TRUE(contains(device->problem(), "error (0x201): force is off")) << device->problem();
 }
 
-TEST_F(OpenHaptics, a_position_that_cannot_be_is_a_fault_and_never_told) {
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    const auto device = open();
-    for (const std::array<double, 3>& absurd :
-         {std::array<double, 3>{nan, 0, 0}, {0, 10001, 0}, {0, 0, -1e300}}) {
-        with([](MockHd& hd) { hd.position = {1, 2, 3}; });
-        ASSERT_TRUE(presses(*device, Vec3(1, 2, 0)));
-        with([&](MockHd& hd) { hd.position = absurd; });
-        ASSERT_TRUE(becomes(*device, DeviceStatus::fault));
-        EXPECT_EQ(device->read(0).position, Vec3(1, 2, 3));
-        EXPECT_TRUE(contains(device->problem(), "cannot be")) << device->problem();
-        EXPECT_TRUE(stays_at_zero(*device));
-    }
-}
-
 TEST_F(OpenHaptics, a_position_that_the_driver_does_not_give_is_none) {
     const auto device = open();
-    ASSERT_TRUE(presses(*device, Vec3(1, 2, 0)));
-    with([](MockHd& hd) { hd.no_position = true; });
+    ASSERT_TRUE(presses(*device));
+    with([](auto& hd) { hd.no_position = true; });
     EXPECT_TRUE(becomes(*device, DeviceStatus::fault));
     EXPECT_TRUE(stays_at_zero(*device));
 }
@@ -434,50 +298,23 @@ TEST_F(OpenHaptics, a_position_that_the_driver_does_not_give_is_none) {
 TEST_F(OpenHaptics, a_servo_loop_that_stands_still_is_stale_and_can_be_closed) {
     auto device = open();
     ASSERT_TRUE(becomes(*device, DeviceStatus::ready));
-    with([](MockHd& hd) { hd.silent = true; });
+    with([](auto& hd) { hd.silent = true; });
     ASSERT_TRUE(becomes(*device, DeviceStatus::stale));
     EXPECT_TRUE(contains(device->problem(), "stands still")) << device->problem();
-    with([](MockHd& hd) { hd.silent = false; });
-    EXPECT_TRUE(presses(*device, Vec3(1, 2, 0)));
-    with([](MockHd& hd) { hd.silent = true; });
+    with([](auto& hd) { hd.silent = false; });
+    EXPECT_TRUE(presses(*device));
+    with([](auto& hd) { hd.silent = true; });
     ASSERT_TRUE(becomes(*device, DeviceStatus::stale));
     const std::int64_t then = support::virtual_now();
     device.reset();  // waits half a second for a last frame
     EXPECT_EQ(support::passed_since(then), 500ms);
-    const auto calls = with([](MockHd& hd) { return hd.calls; });
+    const auto calls = with([](auto& hd) { return hd.calls; });
     EXPECT_EQ(calls.back(), "disable device");
     EXPECT_TRUE(force().isZero(0));
 }
 
-TEST_F(OpenHaptics, readings_of_a_slow_driver_are_never_ready_and_get_no_force) {
-    with([](MockHd& hd) { hd.while_beginning = [] { pass(50ms); }; });
-    const auto device = open();
-    ASSERT_TRUE(becomes(*device, DeviceStatus::stale));
-    EXPECT_TRUE(throughout(
-        300ms, [&] { return device->read(0).status != DeviceStatus::ready && force().isZero(0); },
-        [&] { device->write({Vec3(1, 1, 1)}, 0); }));
-    with([](MockHd& hd) { hd.while_beginning = nullptr; });
-    EXPECT_TRUE(presses(*device, Vec3(1, 2, 0)));
-}
-
-/// The driver's servo loop, at its real pace.
-class PacedOpenHaptics : public OpenHaptics {};
-
-TEST_F(PacedOpenHaptics, its_loop_presses_and_is_closed) {
-    with([](MockHd& hd) { hd.own_thread = true; });
-    const std::string text = "openhaptics:library=" + std::string(MOCK_HD);
-    auto device = open_openhaptics(parse_device(text), any_scene());
-    const Vec3 newtons(1, 2, 0);
-    EXPECT_TRUE(support::comes_true([&] {
-        device->write({newtons, Vec3::Zero()}, 0);
-        return (force() - newtons).norm() < 1e-12;
-    }));
-    EXPECT_TRUE(support::comes_true([&] { return force().isZero(0); }));  // the servo is silent
-    EXPECT_TRUE(support::comes_true([&] { return device->read(0).status == DeviceStatus::ready; }));
-    device.reset();
-    EXPECT_EQ(with([](MockHd& hd) { return hd.force_at_stop; }), (std::array<double, 3>{}));
-    EXPECT_FALSE(with([](MockHd& hd) { return hd.device_open; }));
-}
+INSTANTIATE_TYPED_TEST_SUITE_P(OpenHaptics, Vendor, OpenHaptics);
+INSTANTIATE_TYPED_TEST_SUITE_P(Paced, ThreadOf, OpenHaptics);
 
 }  // namespace
 }  // namespace palpate::devices

@@ -9,6 +9,7 @@
 
 #include "devices/spacenav/mock_daemon.hpp"
 #include "devices/stepped_device.hpp"
+#include "palpate/devices/devices.hpp"
 #include "support/allocation_counter.hpp"
 #include "support/eventually.hpp"
 #include "support/scratch_folder.hpp"
@@ -44,7 +45,7 @@ class Spacenav : public support::SteppedDevice {
 TEST_F(Spacenav, a_daemon_that_is_not_there_is_told_with_every_place_that_was_tried) {
     const auto open_nothing = [](const std::string& options) {
         return message_of<DeviceError>(
-            [&] { open_spacenav(parse_device("spacenav" + options), any_scene()); });
+            [&] { open_device(parse_device("spacenav" + options), any_scene()); });
     };
     const std::string message = open_nothing(":/nowhere/spnav.sock");
     EXPECT_TRUE(contains(message,
@@ -60,11 +61,11 @@ TEST_F(Spacenav, a_daemon_that_is_not_there_is_told_with_every_place_that_was_tr
 
 TEST_F(Spacenav, the_environment_says_where_the_socket_is) {
     ASSERT_EQ(setenv("SPNAV_SOCKET", daemon_.path().c_str(), 1), 0);
-    const DeviceFinding finding = find_spacenav();
+    const DeviceFinding finding = spacenav::find();
     EXPECT_TRUE(finding.found) << finding.missing;
     EXPECT_EQ(finding.what, "spacenavd at " + daemon_.path());
     EXPECT_TRUE(daemon_.accept());
-    const auto device = open_spacenav(parse_device("spacenav"), any_scene());
+    const auto device = open_device(parse_device("spacenav"), any_scene());
     EXPECT_EQ(device->info().model, "3D mouse, spacenavd at " + daemon_.path());
     unsetenv("SPNAV_SOCKET");
 }
@@ -266,7 +267,7 @@ TEST_F(Spacenav, can_be_closed_while_it_is_lost) {
 class PacedSpacenav : public Spacenav {};
 
 TEST_F(PacedSpacenav, its_thread_outlives_a_lack_of_memory) {
-    auto device = open_spacenav(parse_device("spacenav:socket=" + daemon_.path()), any_scene());
+    auto device = open_device(parse_device("spacenav:socket=" + daemon_.path()), any_scene());
     ASSERT_TRUE(daemon_.accept());
     daemon_.go_away();
     const auto becomes = [&](DeviceStatus status) {
@@ -283,7 +284,7 @@ TEST_F(PacedSpacenav, its_thread_outlives_a_lack_of_memory) {
 }
 
 TEST_F(PacedSpacenav, its_thread_moves_the_hand_and_connects_again) {
-    auto device = open_spacenav(parse_device("spacenav:socket=" + daemon_.path()), any_scene());
+    auto device = open_device(parse_device("spacenav:socket=" + daemon_.path()), any_scene());
     ASSERT_TRUE(daemon_.accept());
     daemon_.say({0, 0, 0, -350, 0, 0, 0, 8});
     EXPECT_TRUE(support::comes_true([&] { return device->read(0).position[2] > 1; }));
