@@ -10,9 +10,7 @@
 #include <tuple>
 #include <utility>
 
-#include "io/helper/dicom_kinds.hpp"
-#include "io/helper/dicom_place.hpp"
-#include "io/helper/dicom_values.hpp"
+#include "io/helper/dicom_attributes.hpp"
 
 namespace palpate::io {
 namespace {
@@ -100,7 +98,7 @@ void spread_stack(std::vector<DicomSlice>& slices, const FramesOfStack& stack) {
     const DicomSlice first = slices[stack[0]];
     const auto is_here = [&](std::size_t i) {
         const DicomSlice& s = slices[i];
-        return s.position && s.row && s.column && *s.position == *first.position &&
+        return s.is_placed() && *s.position == *first.position &&
                s.is_numbered == first.is_numbered;
     };
     if (!first.position || stack.size() < 2 || !std::ranges::all_of(stack, is_here)) return;
@@ -112,11 +110,10 @@ void spread_stack(std::vector<DicomSlice>& slices, const FramesOfStack& stack) {
     const double step = first.between != 0    ? first.between
                         : first.thickness > 0 ? first.thickness
                                               : default_step;
-    const Vec3 normal = first.row->cross(*first.column).normalized();
     for (std::size_t rank = 0; rank < stack.size(); ++rank) {
         DicomSlice& s = slices[stack[rank]];
         const double steps = s.is_numbered ? s.order - start : static_cast<double>(rank);
-        s.position = *first.position + normal * (step * steps);
+        s.position = *first.position + first.normal() * (step * steps);
         check_coordinate(step * steps, "DICOM tag InStackPositionNumber");
         s.is_sided = false;
         add_note(s.notes,
@@ -219,10 +216,9 @@ std::vector<int> order_of(const DicomSlice& file, const DicomGroup& data) {
 /// One behind the other from the first one's position, by the distances given [mm].
 void place_behind(std::vector<DicomSlice>& slices, const std::vector<double>& distances) {
     const DicomSlice first = slices.front();
-    if (!first.position || !first.row || !first.column) return;
-    const Vec3 normal = first.row->cross(*first.column).normalized();
+    if (!first.is_placed()) return;
     for (std::size_t i = 0; i < slices.size(); ++i) {
-        slices[i].position = *first.position + normal * (distances[i] - distances[0]);
+        slices[i].position = *first.position + first.normal() * (distances[i] - distances[0]);
     }
 }
 
@@ -230,10 +226,9 @@ void place_behind(std::vector<DicomSlice>& slices, const std::vector<double>& di
 /// the first one is that of the position.
 std::vector<double> along_normal(std::vector<double> offsets, const DicomSlice& first) {
     constexpr double rounding = 0.01;  // [mm]
-    if (!first.position || !first.row || !first.column || offsets[0] == 0) return offsets;
+    if (!first.is_placed() || offsets[0] == 0) return offsets;
     const bool is_z = std::abs(offsets[0] - first.position->z()) <= rounding;
-    const double z = first.row->cross(*first.column).normalized().z();
-    if (is_z && z < -0.99) {
+    if (is_z && first.normal().z() < -0.99) {
         for (double& offset : offsets) offset = -offset;
     }
     return offsets;

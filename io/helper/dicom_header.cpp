@@ -6,12 +6,10 @@
 #include <cmath>
 #include <sstream>
 
+#include "io/helper/dicom_attributes.hpp"
 #include "io/helper/dicom_check.hpp"
 #include "io/helper/dicom_frames.hpp"
 #include "io/helper/dicom_group.hpp"
-#include "io/helper/dicom_kinds.hpp"
-#include "io/helper/dicom_place.hpp"
-#include "io/helper/dicom_values.hpp"
 #include "io/helper/headers.hpp"
 #include "io/system/number.hpp"
 

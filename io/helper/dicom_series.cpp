@@ -38,7 +38,7 @@ bool are_alike(const DicomSlice& a, const DicomSlice& b) {
 
 /// [mm] along the normal; the number of a slice without a place.
 double place_along(const DicomSlice& s) {
-    if (!is_placed(s)) return s.frames > 1 ? s.order : s.instance;
+    if (!s.is_placed()) return s.frames > 1 ? s.order : s.instance;
     return s.row->cross(*s.column).dot(*s.position);
 }
 
@@ -46,7 +46,7 @@ double place_along(const DicomSlice& s) {
 std::vector<double> places_along(const DicomSeries& series) {
     std::vector<double> along;
     for (const DicomSlice& s : series.slices) {
-        if (!is_placed(s)) return {};
+        if (!s.is_placed()) return {};
         along.push_back(place_along(s));
     }
     std::sort(along.begin(), along.end());
@@ -176,10 +176,6 @@ std::string difference_of(const DicomSeries& series, const std::vector<DicomSeri
 }
 
 }  // namespace
-
-bool is_placed(const DicomSlice& s) {
-    return s.position && s.row && s.column;
-}
 
 /// Some scanners have pixels of 1 um.
 double same_place_mm(const DicomSeries& series) {

@@ -17,8 +17,6 @@ std::vector<DicomSeries> series_of(std::vector<DicomSlice> slices);
 /// throws ChooseSeries, without pictures.
 const DicomSeries& choose_series(const std::vector<DicomSeries>& all, const std::string& chosen);
 
-/// Whether it has a position and an orientation.
-bool is_placed(const DicomSlice& slice);
 /// [mm] Slices of the series that are nearer to each other lie at one place.
 double same_place_mm(const DicomSeries& series);
 

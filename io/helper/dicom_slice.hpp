@@ -1,6 +1,7 @@
 // The contents of the header of a DICOM slice, and slices that belong together.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <limits>
 #include <memory>
 
@@ -61,6 +62,11 @@ struct DicomSlice {
     std::shared_ptr<const ValueTable> table = {};  ///< of the values; null: slope and intercept
     std::string compression;         ///< "JPEG 2000", "deflate", ...; empty if there is none
     std::vector<std::string> notes;  ///< on the file
+
+    /// Whether it has a position and an orientation.
+    bool is_placed() const { return position && row && column; }
+    /// Of a slice with an orientation.
+    Vec3 normal() const { return row->cross(*column).normalized(); }
 };
 
 /// Slices that belong together: one series UID, one stack, one size, one orientation.

@@ -246,7 +246,7 @@ bool are_only_numbered(const DicomSeries& series) {
 /// a place of its own.
 void place_by_location(DicomSeries& series, std::vector<std::string>& notes) {
     const bool placed = std::ranges::all_of(series.slices, [&](const DicomSlice& s) {
-        return is_placed(s) && is_placed(series.slices.front());
+        return s.is_placed() && series.slices.front().is_placed();
     });
     if (placed && std::ranges::any_of(series.slices, [&](const DicomSlice& s) {
             return *s.position != *series.slices.front().position;
@@ -282,10 +282,10 @@ void place_by_location(DicomSeries& series, std::vector<std::string>& notes) {
 
 /// Slices without a place, among others that have different ones, cannot be put anywhere.
 void check_all_placed(const DicomSeries& series) {
-    const auto first = std::ranges::find_if_not(series.slices, is_placed);
-    const auto placed = std::ranges::find_if(series.slices, is_placed);
+    const auto first = std::ranges::find_if_not(series.slices, &DicomSlice::is_placed);
+    const auto placed = std::ranges::find_if(series.slices, &DicomSlice::is_placed);
     const auto is_elsewhere = [&](const DicomSlice& s) {
-        return is_placed(s) && *s.position != *placed->position;
+        return s.is_placed() && *s.position != *placed->position;
     };
     if (first == series.slices.end() || std::ranges::none_of(series.slices, is_elsewhere)) return;
     throw Failure("some of its slices have no place, the first in " + quoted(first->file) +
@@ -345,7 +345,7 @@ Stack stack_slices(const DicomSeries& series, const Request& request) {
             "it does not say on which side of each other its slices lie: the volume may be "
             "mirrored, and is not oriented");
     }
-    if (!std::ranges::all_of(scaled.slices, is_placed)) {
+    if (!std::ranges::all_of(scaled.slices, &DicomSlice::is_placed)) {
         check_all_placed(scaled);
         pile_up(scaled, request, stack);
         stack.geometry.size[2] = static_cast<int>(stack.slices.size());

@@ -100,6 +100,9 @@ void check_raw_length(VolumeHeader& header);
 /// checks.
 void stream_samples(VolumeHeader& header, const ByteSink& sink);
 
+/// Appends a number of a text as a sample. Throws Failure if an integer type cannot hold it.
+void append_sample(double number, Stored stored, std::vector<std::byte>& bytes);
+
 /// What to do with scans of Philips in two files, .PAR and .REC.
 inline constexpr const char* parrec_advice =
     "is of a scan of Philips (PAR/REC), which is not read; convert it with dcm2niix or "

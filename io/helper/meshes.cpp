@@ -1,28 +1,29 @@
 // Reads the triangles of meshes: VTP by VTK, other formats by parsers of our own.
 #include <vtkCellArray.h>
 #include <vtkIdList.h>
-#include <vtkMergePoints.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkPolygon.h>
-#include <vtkTriangleFilter.h>
 #include <vtkXMLPolyDataReader.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <limits>
 #include <new>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <sstream>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -40,7 +41,7 @@
 namespace palpate::io {
 namespace {
 
-vtkSmartPointer<vtkPolyData> read_vtp(const std::filesystem::path& path) {
+PolygonMesh read_vtp(const std::filesystem::path& path) {
     const vtkNew<ErrorKeeper> errors;
     vtkOutputWindow::SetInstance(errors);
     const vtkNew<vtkXMLPolyDataReader> reader;
@@ -51,7 +52,25 @@ vtkSmartPointer<vtkPolyData> read_vtp(const std::filesystem::path& path) {
         throw Failure("is damaged or not what its name says (" + errors->first() +
                       "); export it again");
     }
-    return reader->GetOutput();
+    PolygonMesh mesh;
+    vtkPolyData& read = *reader->GetOutput();
+    for (vtkIdType i = 0; i < read.GetNumberOfPoints(); ++i) {
+        read.GetPoint(i, mesh.vertices.emplace_back().data());
+    }
+    const auto for_each = [](vtkCellArray& cells, const auto& use) {
+        vtkIdType count = 0;
+        const vtkIdType* ids = nullptr;
+        for (cells.InitTraversal(); cells.GetNextCell(count, ids) != 0;) {
+            use(std::vector<std::int64_t>(ids, ids + count));
+        }
+    };
+    for_each(*read.GetPolys(), [&](auto face) { mesh.faces.push_back(std::move(face)); });
+    for_each(*read.GetStrips(), [&](const auto& strip) {
+        for (std::size_t i = 0; i + 2 < strip.size(); ++i) {  // every second one is turned
+            mesh.faces.push_back({strip[i], strip[i + 1 + i % 2], strip[i + 2 - i % 2]});
+        }
+    });
+    return mesh;
 }
 
 std::string bytes_of(const std::filesystem::path& path) {
@@ -61,30 +80,13 @@ std::string bytes_of(const std::filesystem::path& path) {
 
 /// The vertex that a corner of an OBJ face names ("3", "3/1/2", from 1, or backwards from -1). It
 /// may come later in the file.
-vtkIdType vertex_of(std::string_view corner, vtkIdType vertices, const std::string& line) {
+std::int64_t vertex_of(std::string_view corner, std::int64_t vertices, const std::string& line) {
     const auto number = number_from<std::int64_t>(corner.substr(0, corner.find('/')));
     const std::int64_t index = number.value_or(0);
     if (index > 0) return index - 1;
     if (index < 0 && index >= -vertices) return vertices + index;
     throw Failure("'" + line.substr(0, 60) + "' names a vertex that is not there; export it again");
 }
-
-/// A mesh of polygons, to be filled.
-struct Polygons {
-    vtkNew<vtkPoints> points;
-    vtkNew<vtkCellArray> faces;
-
-    Polygons() { points->SetDataTypeToDouble(); }
-    void add_face(const std::vector<vtkIdType>& corners) const {
-        faces->InsertNextCell(static_cast<vtkIdType>(corners.size()), corners.data());
-    }
-    vtkSmartPointer<vtkPolyData> data() const {
-        auto data = vtkSmartPointer<vtkPolyData>::New();
-        data->SetPoints(points);
-        data->SetPolys(faces);
-        return data;
-    }
-};
 
 /// Whether a line of OBJ goes on in the next one, by a backslash at its end, which is taken off.
 /// Blanks may follow it in lines of numbers. In others it may belong to a path of Windows.
@@ -135,23 +137,16 @@ std::optional<double> unit_of(const std::string& comment) {
     return length ? std::optional(times * *length) : std::nullopt;
 }
 
-void scale(vtkPoints& points, double factor) {
-    for (vtkIdType i = 0; i < points.GetNumberOfPoints(); ++i) {
-        Vec3 at;
-        points.GetPoint(i, at.data());
-        at *= factor;
-        points.SetPoint(i, at.data());
-    }
-}
-
 /// Vertices and faces. Not by VTK, whose reader loses faces that count their vertices backwards.
-vtkSmartPointer<vtkPolyData> read_obj(const std::filesystem::path& path) {
+PolygonMesh read_obj(const std::filesystem::path& path) {
     std::istringstream in(plain_text(bytes_of(path)));
-    const Polygons mesh;
+    PolygonMesh mesh;
     std::optional<double> unit;
     for (std::string line, comment; next_line(in, line, &comment);) {
         if (const auto told = unit_of(comment)) {
-            if (!unit) scale(*mesh.points, *told);  // those before it, too
+            for (auto& vertex : mesh.vertices) {  // those before it, too
+                for (double& coordinate : vertex) coordinate *= unit ? 1 : *told;
+            }
             unit = told;
         }
         for (std::string more; goes_on(line) && next_line(in, more);) line += more;
@@ -159,8 +154,7 @@ vtkSmartPointer<vtkPolyData> read_obj(const std::filesystem::path& path) {
         std::string word;
         words >> word;
         if (word == "v") {
-            double at[3] = {};
-            for (double& coordinate : at) {
+            for (double& coordinate : mesh.vertices.emplace_back()) {
                 words >> word;
                 const auto number = number_from<double>(word);
                 if (!words || !number) {
@@ -169,92 +163,77 @@ vtkSmartPointer<vtkPolyData> read_obj(const std::filesystem::path& path) {
                 }
                 coordinate = unit.value_or(1) * *number;
             }
-            mesh.points->InsertNextPoint(at);
         } else if (word == "f") {
-            std::vector<vtkIdType> corners;
-            while (words >> word) {
-                corners.push_back(vertex_of(word, mesh.points->GetNumberOfPoints(), line));
-            }
-            mesh.add_face(corners);
+            auto& face = mesh.faces.emplace_back();
+            while (words >> word) face.push_back(vertex_of(word, std::ssize(mesh.vertices), line));
         }
     }
-    return mesh.data();
-}
-
-vtkSmartPointer<vtkPolyData> read_ply(const std::filesystem::path& path) {
-    const PlyMesh read = ply_mesh(path);
-    const Polygons mesh;
-    for (const auto& vertex : read.vertices) mesh.points->InsertNextPoint(vertex.data());
-    for (const auto& face : read.faces) mesh.add_face({face.begin(), face.end()});
-    return mesh.data();
+    return mesh;
 }
 
 /// Corners at one place become one vertex. Triangles of which two do are left out.
-vtkSmartPointer<vtkPolyData> read_stl(const std::filesystem::path& path) {
+PolygonMesh read_stl(const std::filesystem::path& path) {
+    using Corner = std::array<double, 3>;
+    struct Hash {
+        std::size_t operator()(const Corner& corner) const {
+            std::size_t hash = 0;
+            for (const double c : corner) hash = hash * 31 + std::hash<double>()(c);
+            return hash;
+        }
+    };
     const auto corners = stl_corners(bytes_of(path));
-    const Polygons mesh;
-    const vtkNew<vtkPoints> all;
-    all->SetDataTypeToDouble();
-    for (const auto& corner : corners) {
-        if (!std::isfinite(corner[0] + corner[1] + corner[2])) {
-            throw Failure("vertex " + std::to_string(all->GetNumberOfPoints()) +
-                          " is not finite; export it again");
-        }
-        all->InsertNextPoint(corner.data());
-    }
-    const vtkNew<vtkMergePoints> merged;
-    merged->InitPointInsertion(mesh.points, all->GetBounds(), all->GetNumberOfPoints());
-    std::vector<vtkIdType> ids(3);
+    PolygonMesh mesh;
+    std::unordered_map<Corner, std::int64_t, Hash> known;
     for (std::size_t i = 0; i < corners.size(); i += 3) {
-        for (std::size_t c = 0; c < 3; ++c) {
-            merged->InsertUniquePoint(corners[i + c].data(), ids[c]);
+        std::vector<std::int64_t> ids;
+        for (std::size_t c = i; c < i + 3; ++c) {
+            const auto [at, is_new] = known.emplace(corners[c], std::ssize(mesh.vertices));
+            if (is_new) mesh.vertices.push_back(corners[c]);
+            ids.push_back(at->second);
         }
-        if (ids[0] != ids[1] && ids[1] != ids[2] && ids[2] != ids[0]) mesh.add_face(ids);
+        if (ids[0] != ids[1] && ids[1] != ids[2] && ids[2] != ids[0]) {
+            mesh.faces.push_back(std::move(ids));
+        }
     }
-    return mesh.data();
+    return mesh;
 }
 
-vtkSmartPointer<vtkPolyData> read_poly_data(const std::filesystem::path& path,
-                                            const std::string& extension) {
+PolygonMesh read_polygons(const std::filesystem::path& path, const std::string& extension) {
     if (extension == ".stl") return read_stl(path);
-    if (extension == ".ply") return read_ply(path);
+    if (extension == ".ply") return ply_mesh(path);
     if (extension == ".obj") return read_obj(path);
     if (extension == ".vtp") return read_vtp(path);
     throw Failure("has no extension of a known mesh format (stl, ply, obj, vtp)");
 }
 
-/// Faces that name a vertex the file has not would be read beyond the array's end.
-void check_faces(vtkCellArray& faces, vtkIdType vertices) {
-    vtkIdType count = 0;
-    const vtkIdType* ids = nullptr;
-    for (faces.InitTraversal(); faces.GetNextCell(count, ids) != 0;) {
-        for (vtkIdType i = 0; i < count; ++i) {
-            if (ids[i] >= 0 && ids[i] < vertices) continue;
-            throw Failure("a face names vertex " + std::to_string(ids[i]) + " of " +
+/// Refuses faces that name a vertex the file has not, and vertices that are nowhere.
+void check_mesh(const PolygonMesh& mesh) {
+    const std::int64_t vertices = std::ssize(mesh.vertices);
+    for (const auto& face : mesh.faces) {
+        for (const std::int64_t id : face) {
+            if (id >= 0 && id < vertices) continue;
+            throw Failure("a face names vertex " + std::to_string(id) + " of " +
                           std::to_string(vertices) + "; export it again");
         }
     }
-}
-
-void check_finite(vtkPolyData& mesh) {
-    for (vtkIdType i = 0; i < mesh.GetNumberOfPoints(); ++i) {
-        double at[3];
-        mesh.GetPoint(i, at);
-        if (!std::isfinite(at[0] + at[1] + at[2])) {
-            throw Failure("vertex " + std::to_string(i) + " is not finite; export it again");
-        }
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+        const auto& [x, y, z] = mesh.vertices[i];
+        if (std::isfinite(x + y + z)) continue;
+        throw Failure("vertex " + std::to_string(i) + " is not finite; export it again");
+    }
+    if (vertices > std::numeric_limits<std::uint32_t>::max()) {
+        throw Failure("has more vertices than can be read; simplify it");
     }
 }
 
 /// A face without corners at the place of the one before, for which VTK drops it.
 struct Face {
-    std::vector<vtkIdType> ids;
+    std::vector<std::int64_t> ids;
     std::vector<Vec3> corners;
 
-    Face(vtkPoints& points, std::span<const vtkIdType> all) {
-        for (const vtkIdType id : all) {
-            Vec3 corner;
-            points.GetPoint(id, corner.data());
+    Face(const PolygonMesh& mesh, std::span<const std::int64_t> all) {
+        for (const std::int64_t id : all) {
+            const Vec3 corner(mesh.vertices[static_cast<std::size_t>(id)].data());
             if (!corners.empty() && corner == corners.back()) continue;
             ids.push_back(id);
             corners.push_back(corner);
@@ -282,10 +261,15 @@ struct Face {
     }
 };
 
-Triangles divided_by_vtk(const Face& face, vtkPoints& points) {
+Triangles divided_by_vtk(const Face& face) {
+    const vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    for (const Vec3& corner : face.corners) points->InsertNextPoint(corner.data());
+    std::vector<vtkIdType> ids(face.corners.size());
+    std::iota(ids.begin(), ids.end(), vtkIdType{0});
     const vtkNew<vtkPolygon> polygon;
     const vtkNew<vtkIdList> found;
-    polygon->Initialize(static_cast<int>(face.ids.size()), face.ids.data(), &points);
+    polygon->Initialize(static_cast<int>(ids.size()), ids.data(), points);
     polygon->Triangulate(found);
     Triangles triangles;
     for (vtkIdType t = 0; t + 2 < found->GetNumberOfIds(); t += 3) {
@@ -310,9 +294,12 @@ Triangles divided_by_ears(const Face& face) {
     return clipped_ears(std::move(corners));
 }
 
-/// Those of VTK, unless it fails, as it does on many outlines that are not convex. Nothing of a
-/// face without area.
-Triangles triangles_of(const Face& face, vtkPoints& points) {
+/// Those of VTK, unless it fails, as it does on many outlines that are not convex, but not on those
+/// of four corners. Nothing of a face without area.
+Triangles triangles_of(const Face& face) {
+    if (face.corners.size() == 3) return {{0, 1, 2}};
+    Triangles triangles = divided_by_vtk(face);
+    if (face.corners.size() == 4) return triangles;
     double length = 0, reach = 0, greatest = 0;
     for (std::size_t i = 0; i < face.corners.size(); ++i) {
         length = std::max(length, (face.corners[i] - face.corners[0]).norm());
@@ -321,7 +308,6 @@ Triangles triangles_of(const Face& face, vtkPoints& points) {
     }
     // Corners that were on a line before numbers were rounded, to seven digits or fewer decimals.
     const double no_area = 1e-6 * length * reach + 1e-4 * length * length;
-    Triangles triangles = divided_by_vtk(face, points);
     double left = face.left_by(triangles);
     if (triangles.empty() || left > 1e-9 * length * length) {
         Triangles ears = divided_by_ears(face);
@@ -336,67 +322,33 @@ Triangles triangles_of(const Face& face, vtkPoints& points) {
                   " corners cannot be divided into triangles; export it again as triangles");
 }
 
-/// Its strips, and its faces with up to four corners, which VTK always divides. VTK drops other
-/// faces that it cannot divide, so they become triangles here.
-vtkSmartPointer<vtkPolyData> divided(vtkPolyData& mesh) {
-    if (mesh.GetPolys()->GetMaxCellSize() <= 3) return &mesh;
-    const vtkNew<vtkCellArray> faces;
-    vtkIdType count = 0;
-    const vtkIdType* ids = nullptr;
-    for (mesh.GetPolys()->InitTraversal(); mesh.GetPolys()->GetNextCell(count, ids) != 0;) {
-        if (count < 4) {
-            faces->InsertNextCell(count, ids);
-            continue;
-        }
-        const Face face(*mesh.GetPoints(), {ids, static_cast<std::size_t>(count)});
-        const std::size_t corners = face.ids.size();
-        if (corners == 3 || corners == 4) {
-            faces->InsertNextCell(static_cast<vtkIdType>(corners), face.ids.data());
-        } else if (corners > 4) {
-            for (const auto& triangle : triangles_of(face, *mesh.GetPoints())) {
-                faces->InsertNextCell(3);
-                for (const std::size_t corner : triangle) faces->InsertCellPoint(face.ids[corner]);
-            }
-        }
-    }
-    auto made = vtkSmartPointer<vtkPolyData>::New();
-    made->SetPoints(mesh.GetPoints());
-    made->SetPolys(faces);
-    made->SetStrips(mesh.GetStrips());
-    return made;
-}
-
 }  // namespace
 
 MeshSize read_mesh(const std::filesystem::path& path, const std::string& extension) {
-    const vtkSmartPointer<vtkPolyData> read = read_poly_data(path, extension);
-    check_faces(*read->GetPolys(), read->GetNumberOfPoints());
-    check_faces(*read->GetStrips(), read->GetNumberOfPoints());
-    check_finite(*read);
-    const vtkNew<vtkTriangleFilter> filter;
-    filter->SetInputData(divided(*read));
-    filter->PassVertsOff();
-    filter->PassLinesOff();
-    filter->Update();
-    vtkPolyData& mesh = *filter->GetOutput();
-    const MeshSize size{mesh.GetNumberOfPoints(), mesh.GetPolys()->GetNumberOfCells()};
-    if (size.triangles == 0) {
+    const PolygonMesh mesh = read_polygons(path, extension);
+    check_mesh(mesh);
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    const auto add = [&](std::int64_t a, std::int64_t b, std::int64_t c) {
+        triangles.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b),
+                             static_cast<std::uint32_t>(c)});
+    };
+    for (const auto& ids : mesh.faces) {
+        if (ids.size() == 3) add(ids[0], ids[1], ids[2]);
+        if (ids.size() < 4) continue;
+        const Face face(mesh, ids);
+        if (face.corners.size() < 3) continue;
+        for (const auto& [a, b, c] : triangles_of(face)) add(face.ids[a], face.ids[b], face.ids[c]);
+    }
+    if (triangles.empty()) {
         throw Failure("has no faces; export it again as a mesh of triangles or polygons");
     }
-    if (size.vertices > std::numeric_limits<std::uint32_t>::max()) {
-        throw Failure("has more vertices than can be read; simplify it");
-    }
+    const MeshSize size{std::ssize(mesh.vertices), std::ssize(triangles)};
     void* const memory = memory_of_caller(mesh_bytes(size.vertices, size.triangles));
     if (!memory) throw std::bad_alloc();
-    auto* const vertices = static_cast<double*>(memory);
-    for (vtkIdType i = 0; i < size.vertices; ++i) mesh.GetPoint(i, vertices + 3 * i);
-    auto* triangle = reinterpret_cast<std::uint32_t*>(vertices + 3 * size.vertices);
-    vtkIdType count = 0;
-    const vtkIdType* ids = nullptr;
-    vtkCellArray& cells = *mesh.GetPolys();
-    for (cells.InitTraversal(); cells.GetNextCell(count, ids) != 0;) {
-        for (int i = 0; i < 3; ++i) *triangle++ = static_cast<std::uint32_t>(ids[i]);
-    }
+    const std::size_t of_vertices = mesh.vertices.size() * sizeof mesh.vertices[0];
+    std::memcpy(memory, mesh.vertices.data(), of_vertices);
+    std::memcpy(static_cast<std::byte*>(memory) + of_vertices, triangles.data(),
+                triangles.size() * sizeof triangles[0]);
     return size;
 }
 

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "io/helper/decode.hpp"
-#include "io/helper/tiff_calibration.hpp"
 #include "io/helper/xml.hpp"
 #include "io/system/number.hpp"
 #include "io/units.hpp"
@@ -180,14 +179,17 @@ void set_spacing(OmeImage& image, const Vec3& spacings, const std::array<std::st
     }
 }
 
-void order_pages(OmeImage& image, const std::string& order, std::array<std::int64_t, 3> sizes) {
+void take_counts(OmeImage& image, const CountedPages& counted) {
     const std::vector<std::uint32_t> in_file = image.pages;
-    image.sizes = sizes;
-    put_pages(image, PlaneOrder(order), {0, 0, 0}, 0, std::ssize(in_file));
+    image.format = counted.format;
+    image.sizes = counted.sizes;
+    put_pages(image, PlaneOrder(counted.order), {0, 0, 0}, 0, std::ssize(in_file));
     for (std::uint32_t& page : image.pages) page = in_file[page];
-    for (std::int64_t c = 0; sizes[1] > 1 && c < sizes[1]; ++c) {
+    for (std::int64_t c = 0; image.sizes[1] > 1 && c < image.sizes[1]; ++c) {
         image.channels.push_back("channel " + std::to_string(c));
     }
+    if (counted.metres != Vec3::Zero()) set_spacing(image, counted.metres, {"m", "m", "m"}, "it");
+    if (image.sizes[2] > 1) image.frame_interval = std::max(counted.seconds, 0.0);
 }
 
 bool is_ome_xml(const std::string& description) {

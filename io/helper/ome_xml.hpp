@@ -33,9 +33,17 @@ struct OmeImage {
 void set_spacing(OmeImage& image, const Vec3& spacings, const std::array<std::string, 3>& units,
                  const std::string& source);
 
-/// Gives its planes the pages that it has, which the file counts in an order such as "XYCZT".
-/// `sizes`: of z, channels and times, whose product is the number of pages.
-void order_pages(OmeImage& image, const std::string& order, std::array<std::int64_t, 3> sizes);
+/// How a program counts the pages of a file.
+struct CountedPages {
+    std::string format;
+    std::string order = "XYCZT";                 ///< of the pages
+    std::array<std::int64_t, 3> sizes{1, 1, 1};  ///< of z, channels, times
+    Vec3 metres = Vec3::Zero();  ///< between samples along x, y, z; 0: it does not say
+    double seconds = 0;          ///< between times; 0: it does not say
+};
+
+/// Gives its planes the pages that it has, as many as are counted.
+void take_counts(OmeImage& image, const CountedPages& counted);
 
 bool is_ome_xml(const std::string& description);
 

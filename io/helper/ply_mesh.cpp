@@ -147,7 +147,7 @@ std::size_t count_from(double number, const Numbers& numbers) {
 }
 
 /// A strip's triangles; -1 begins a new strip.
-void add_strip(const std::vector<std::int64_t>& strip, PlyMesh& mesh) {
+void add_strip(const std::vector<std::int64_t>& strip, PolygonMesh& mesh) {
     std::size_t begin = 0;
     for (std::size_t i = 0; i < strip.size(); ++i) {
         if (strip[i] < 0) {
@@ -161,7 +161,7 @@ void add_strip(const std::vector<std::int64_t>& strip, PlyMesh& mesh) {
 }
 
 /// One vertex, face or other element.
-void read_element(const Element& element, Numbers& numbers, PlyMesh& mesh) {
+void read_element(const Element& element, Numbers& numbers, PolygonMesh& mesh) {
     std::array<double, 3> vertex{NAN, NAN, NAN};
     for (const Property& property : element.properties) {
         if (!property.count) {
@@ -185,11 +185,11 @@ void read_element(const Element& element, Numbers& numbers, PlyMesh& mesh) {
 
 }  // namespace
 
-PlyMesh ply_mesh(const std::filesystem::path& path) {
+PolygonMesh ply_mesh(const std::filesystem::path& path) {
     std::ifstream in(path, std::ios::binary);
     const PlyHeader header = header_in(in);
     Numbers numbers(in, header.encoding);
-    PlyMesh mesh;
+    PolygonMesh mesh;
     for (const Element& element : header.elements) {
         if (element.properties.empty()) continue;
         for (std::uint64_t i = 0; i < element.count; ++i) read_element(element, numbers, mesh);

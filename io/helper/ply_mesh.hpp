@@ -8,13 +8,13 @@
 
 namespace palpate::io {
 
-struct PlyMesh {
+struct PolygonMesh {
     std::vector<std::array<double, 3>> vertices;
     std::vector<std::vector<std::int64_t>> faces;  ///< numbers of vertices, not checked
 };
 
 /// Elements in any order, with any other properties and lists, which are passed over. Throws
 /// Failure.
-PlyMesh ply_mesh(const std::filesystem::path& path);
+PolygonMesh ply_mesh(const std::filesystem::path& path);
 
 }  // namespace palpate::io

@@ -88,25 +88,6 @@ void compare_samples(std::uint64_t have, std::uint64_t need, const std::string& 
     compare(have, need, what, doubled ? 0 : padding_allowed, notes);
 }
 
-template <class T>
-void append_sample(double number, std::vector<std::byte>& bytes) {
-    if constexpr (std::is_integral_v<T>) {
-        const double above =
-            std::ldexp(1.0, std::numeric_limits<T>::digits);  // exact, unlike max()
-        if (!(number >= static_cast<double>(std::numeric_limits<T>::min()) && number < above) ||
-            number != std::floor(number)) {
-            throw Failure("its data have the number " + text_of(number) +
-                          ", which its sample type cannot hold; correct the type in its header");
-        }
-    }
-    if constexpr (std::is_arithmetic_v<T>) {  // no header has half floats as text
-        const T value = static_cast<T>(number);
-        const auto at = bytes.size();
-        bytes.resize(at + sizeof value);
-        std::memcpy(bytes.data() + at, &value, sizeof value);
-    }
-}
-
 /// Numbers may have commas between them, as in C.
 class CommasAreBlank : public std::ctype<char> {
   public:
@@ -165,8 +146,7 @@ void read_text(VolumeHeader& header, DataPlace& place, const ByteSink& sink) {
         }
         commas.look(in, word);
         if (count >= wanted) continue;
-        with_stored(header.stored,
-                    [&](auto type) { append_sample<decltype(type)>(*number, bytes); });
+        append_sample(*number, header.stored, bytes);
         if (bytes.size() < chunk_bytes) continue;
         samples(bytes);
         bytes.clear();
@@ -292,6 +272,27 @@ void stream_file(VolumeHeader& header, DataPlace& place, const ByteSink& sink) {
 }
 
 }  // namespace
+
+void append_sample(double number, Stored stored, std::vector<std::byte>& bytes) {
+    with_stored(stored, [&](auto zero) {
+        using T = decltype(zero);
+        using Limits = std::numeric_limits<T>;
+        if constexpr (std::is_integral_v<T>) {
+            const double above = std::ldexp(1.0, Limits::digits);  // exact, unlike max()
+            if (!(number >= static_cast<double>(Limits::min()) && number < above) ||
+                number != std::floor(number)) {
+                throw Failure(
+                    "its data have the number " + text_of(number) +
+                    ", which its sample type cannot hold; correct the type in its header");
+            }
+        }
+        if constexpr (std::is_arithmetic_v<T>) {  // no header has half floats as text
+            const T value = static_cast<T>(number);
+            const auto raw = std::as_bytes(std::span(&value, 1));
+            bytes.insert(bytes.end(), raw.begin(), raw.end());
+        }
+    });
+}
 
 void check_raw_length(VolumeHeader& header) {
     for (const DataPlace& place : header.places) check_length(header, place);

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "io/helper/tiff_calibration.hpp"
-#include "io/helper/tiff_counts.hpp"
+#include "io/helper/tiff_descriptions.hpp"
 #include "io/helper/tiff_page.hpp"
 
 namespace palpate::io {
@@ -61,24 +60,6 @@ std::size_t planes_behind(TIFF* tiff, const fs::path& file, const TiffPage& page
     return static_cast<std::size_t>(told);
 }
 
-/// Divides the pages as LSM, ScanImage, tifffile or ImageJ count them.
-void take_counts(TIFF* tiff, const std::string& description, const TiffPage& first, OmeImage& image,
-                 std::vector<std::string>& notes) {
-    const std::size_t planes = image.pages.size();
-    if (const auto told = counted_pages(tiff, description, first, planes, notes)) {
-        image.format = told->format;
-        order_pages(image, told->order, told->sizes);
-        if (told->metres != Vec3::Zero()) set_spacing(image, told->metres, {"m", "m", "m"}, "it");
-        if (told->sizes[2] > 1) image.frame_interval = std::max(told->seconds, 0.0);
-        return;
-    }
-    const Moments moments = image_j_moments(description, planes, notes);
-    order_pages(image, moments.order,
-                {static_cast<std::int64_t>(planes) / (moments.count * moments.channels),
-                 moments.channels, moments.count});
-    image.frame_interval = moments.times.interval;
-}
-
 }  // namespace
 
 std::string description_of(TIFF* tiff) {
@@ -126,7 +107,6 @@ TiffLayout layout_of(TIFF* tiff, const fs::path& file, std::vector<std::string>&
         return layout;
     }
     OmeImage& image = layout.image;
-    image.format = "TIFF";
     image.pages = pages.whole;
     if (pages.whole.size() == 1) {
         const double plane = static_cast<double>(first.width) * first.height;
@@ -141,7 +121,7 @@ TiffLayout layout_of(TIFF* tiff, const fs::path& file, std::vector<std::string>&
     image.spacing_note =
         "it does not tell its spacing (as ImageJ and OME-XML would): 1 mm was taken along every "
         "axis; give the spacing";
-    take_counts(tiff, description, first, image, notes);
+    take_counts(image, counted_pages(tiff, description, first, image.pages.size(), notes));
     layout.values = image_j_values(description, first.stored, notes);
     set_image_j_spacing(image, tiff, description);
     if (pages.whole.size() == 1 && coarser_levels(tiff).empty()) layout.reduced = pages.reduced;

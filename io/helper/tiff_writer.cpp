@@ -3,7 +3,7 @@
 #include <type_traits>
 
 #include "io/helper/readers.hpp"
-#include "io/helper/tiff_calibration.hpp"
+#include "io/helper/tiff_descriptions.hpp"
 
 namespace palpate::io {
 namespace {

@@ -160,11 +160,10 @@ std::string words_of(const Job& job, CURLcode code, long status) {
     return "the server gives fewer bytes than were requested";
 }
 
-}  // namespace
-
-class HttpClient::Worker {
+class CurlClient : public HttpClient {
   public:
-    Worker(const HttpLimits& limits, TrafficCount& traffic) : limits_(limits), traffic_(traffic) {
+    CurlClient(const HttpLimits& limits, TrafficCount& traffic)
+        : limits_(limits), traffic_(traffic) {
         static const CURLcode ready = curl_global_init(CURL_GLOBAL_DEFAULT);
         multi_ = curl_multi_init();
         if (ready != CURLE_OK || multi_ == nullptr) throw std::bad_alloc();
@@ -176,18 +175,18 @@ class HttpClient::Worker {
         curl_multi_setopt(multi_, CURLMOPT_PIPELINING, static_cast<long>(CURLPIPE_MULTIPLEX));
         thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
     }
-    ~Worker() {
+    ~CurlClient() override {
         thread_.request_stop();
         curl_multi_wakeup(multi_);
         thread_.join();
         for (CURL* easy : idle_) curl_easy_cleanup(easy);
         curl_multi_cleanup(multi_);
     }
-    Worker(const Worker&) = delete;
-    Worker& operator=(const Worker&) = delete;
+    CurlClient(const CurlClient&) = delete;
+    CurlClient& operator=(const CurlClient&) = delete;
 
     std::vector<HttpAnswer> get(std::span<const HttpRequest> requests, std::stop_token stop,
-                                std::uint64_t most) {
+                                std::uint64_t most) override {
         std::vector<std::shared_ptr<Job>> jobs;
         const auto left = std::make_shared<std::uint64_t>(most);
         for (const HttpRequest& request : requests) {
@@ -442,13 +441,10 @@ class HttpClient::Worker {
     std::jthread thread_;
 };
 
-HttpClient::HttpClient(const HttpLimits& limits, TrafficCount& traffic)
-    : worker_(std::make_unique<Worker>(limits, traffic)) {}
-HttpClient::~HttpClient() = default;
+}  // namespace
 
-std::vector<HttpAnswer> HttpClient::get(std::span<const HttpRequest> requests, std::stop_token stop,
-                                        std::uint64_t most) {
-    return worker_->get(requests, std::move(stop), most);
+std::unique_ptr<HttpClient> http_client(const HttpLimits& limits, TrafficCount& traffic) {
+    return std::make_unique<CurlClient>(limits, traffic);
 }
 
 }  // namespace palpate::stream

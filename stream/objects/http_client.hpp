@@ -38,20 +38,16 @@ struct HttpLimits {
 
 class HttpClient {
   public:
-    HttpClient(const HttpLimits& limits, TrafficCount& traffic);
-    ~HttpClient();
-    HttpClient(const HttpClient&) = delete;
-    HttpClient& operator=(const HttpClient&) = delete;
+    virtual ~HttpClient() = default;
 
     /// Answers in the order of the requests, when all are there. An answer has a body, or a status
     /// of 400 and above, or an error, also if all bodies have more than `most` bytes. Throws
     /// Cancelled at once when `stop` is requested.
-    std::vector<HttpAnswer> get(std::span<const HttpRequest> requests, std::stop_token stop,
-                                std::uint64_t most = UINT64_MAX);
-
-  private:
-    class Worker;
-    std::unique_ptr<Worker> worker_;
+    virtual std::vector<HttpAnswer> get(std::span<const HttpRequest> requests, std::stop_token stop,
+                                        std::uint64_t most = UINT64_MAX) = 0;
 };
+
+/// `traffic` must live as long.
+std::unique_ptr<HttpClient> http_client(const HttpLimits& limits, TrafficCount& traffic);
 
 }  // namespace palpate::stream

@@ -57,7 +57,7 @@ class HttpObjects : public Objects {
     HttpObjects(const std::string& address, const StoreOptions& options, std::stop_token stop)
         : forbidden_is_missing_(options.forbidden_is_missing),
           stop_(std::move(stop)),
-          client_({options.requests, options.timeout_s, options.attempts}, traffic_) {
+          client_(http_client({options.requests, options.timeout_s, options.attempts}, traffic_)) {
         base_ = address.find("://") == s3.find("://") ? url_of_s3(address) : address;
         for (std::size_t at = 0; (at = base_.find(' ', at)) != std::string::npos;) {
             base_.replace(at, 1, "%20");
@@ -77,7 +77,7 @@ class HttpObjects : public Objects {
     /// As the answer to a request for the first byte says.
     std::optional<std::uint64_t> size_of(const std::string& key) const override {
         const HttpRequest first = first_byte_of(url_of(key));
-        HttpAnswer answer = std::move(client_.get({&first, 1}, stop_).front());
+        HttpAnswer answer = std::move(client_->get({&first, 1}, stop_).front());
         const auto size = answer.whole_size;
         return body_of({.key = key}, std::move(answer)) ? size : std::nullopt;
     }
@@ -102,7 +102,7 @@ class HttpObjects : public Objects {
         }
         if (!stop.stop_possible()) stop = stop_;
         if (knows_no_suffixes_) place_suffixes(requests, stop);
-        std::vector<HttpAnswer> answers = client_.get(requests, stop, most);
+        std::vector<HttpAnswer> answers = client_->get(requests, stop, most);
         get_suffixes_otherwise(requests, answers, stop);
         std::vector<std::optional<Bytes>> all;
         for (std::size_t i = 0; i < answers.size(); ++i) {
@@ -143,7 +143,7 @@ class HttpObjects : public Objects {
         for (const HttpRequest& request : requests) {
             if (is_suffix(request)) first.push_back(first_byte_of(request.url));
         }
-        const std::vector<HttpAnswer> answers = client_.get(first, stop);
+        const std::vector<HttpAnswer> answers = client_->get(first, stop);
         auto answer = answers.begin();
         for (HttpRequest& request : requests) {
             if (!is_suffix(request)) continue;
@@ -163,7 +163,7 @@ class HttpObjects : public Objects {
             HttpRequest request = requests[i];
             place_suffixes({&request, 1}, stop);
             if (is_suffix(request)) continue;
-            answers[i] = std::move(client_.get({&request, 1}, stop).front());
+            answers[i] = std::move(client_->get({&request, 1}, stop).front());
             if (answers[i].error.empty()) knows_no_suffixes_ = true;
         }
     }
@@ -207,7 +207,7 @@ class HttpObjects : public Objects {
     mutable std::map<std::string, std::string> versions_;  // by key, of what is not lasting
     mutable std::atomic<bool> knows_no_suffixes_{false};
     mutable TrafficCount traffic_;
-    mutable HttpClient client_;
+    const std::unique_ptr<HttpClient> client_;
 };
 
 }  // namespace

@@ -30,48 +30,32 @@ Json slowest_first(const Vector& v) {
     return {v[2], v[1], v[0]};
 }
 
-Json compressor2(Compression compression, std::size_t each) {
-    switch (compression) {
+/// Name and configuration, as both versions of Zarr have them but for few members; null for none.
+Json codec_of(const ConvertOptions& options, std::size_t each) {
+    const bool three = options.zarr_version == 3;
+    Json how;
+    switch (options.compression) {
         case Compression::none:
             return nullptr;
         case Compression::gzip:
-            return {{"id", "gzip"}, {"level", gzip_level}};
+            return {{"name", "gzip"}, {"configuration", {{"level", gzip_level}}}};
         case Compression::zstd:
-            return {{"id", "zstd"}, {"level", zstd_level}};
+            how = {{"level", zstd_level}};
+            if (three) how["checksum"] = true;
+            return {{"name", "zstd"}, {"configuration", how}};
         case Compression::blosc:
             break;
     }
-    return {{"id", "blosc"},
-            {"cname", "zstd"},
-            {"clevel", blosc_level},
-            {"shuffle", each > 1 ? 1 : 0},
-            {"blocksize", 0}};
+    how = {{"cname", "zstd"}, {"clevel", blosc_level}, {"blocksize", 0}};
+    how["shuffle"] = three ? Json(each > 1 ? "shuffle" : "noshuffle") : Json(each > 1 ? 1 : 0);
+    if (three) how["typesize"] = each;
+    return {{"name", "blosc"}, {"configuration", how}};
 }
 
 /// gzip has a checksum of its own, and zstd can have one. Zarr 2 has none for the others.
 bool needs_checksum(const ConvertOptions& options) {
     return options.zarr_version == 3 &&
            (options.compression == Compression::none || options.compression == Compression::blosc);
-}
-
-Json codecs3(Compression compression, std::size_t each) {
-    Json codecs = {{{"name", "bytes"}, {"configuration", {{"endian", "little"}}}}};
-    Json how;
-    if (compression == Compression::gzip) {
-        how = {{"name", "gzip"}, {"configuration", {{"level", gzip_level}}}};
-    } else if (compression == Compression::zstd) {
-        how = {{"name", "zstd"}, {"configuration", {{"level", zstd_level}, {"checksum", true}}}};
-    } else if (compression == Compression::blosc) {
-        how = {{"name", "blosc"},
-               {"configuration",
-                {{"cname", "zstd"},
-                 {"clevel", blosc_level},
-                 {"shuffle", each > 1 ? "shuffle" : "noshuffle"},
-                 {"typesize", each},
-                 {"blocksize", 0}}}};
-    }
-    if (!how.is_null()) codecs.push_back(how);
-    return codecs;
 }
 
 bool is_zero(std::span<const std::byte> bytes) {
@@ -83,11 +67,17 @@ Json array2(const Geometry& grid, SampleType type, const ConvertOptions& options
                               : type == SampleType::int16  ? "<i2"
                               : type == SampleType::uint16 ? "<u2"
                                                            : "<f4";
+    const Json codec = codec_of(options, size_of(type));
+    Json compressor;
+    if (!codec.is_null()) {
+        compressor = codec["configuration"];
+        compressor["id"] = codec["name"];
+    }
     return {{"zarr_format", 2},
             {"shape", slowest_first(grid.size)},
             {"chunks", Json(std::vector<int>(3, options.chunk))},
             {"dtype", dtype},
-            {"compressor", compressor2(options.compression, size_of(type))},
+            {"compressor", compressor},
             {"fill_value", 0},
             {"order", "C"},
             {"filters", nullptr},
@@ -95,7 +85,9 @@ Json array2(const Geometry& grid, SampleType type, const ConvertOptions& options
 }
 
 Json array3(const Geometry& grid, SampleType type, const ConvertOptions& options) {
-    Json codecs = codecs3(options.compression, size_of(type));
+    const Json codec = codec_of(options, size_of(type));
+    Json codecs = {{{"name", "bytes"}, {"configuration", {{"endian", "little"}}}}};
+    if (!codec.is_null()) codecs.push_back(codec);
     if (needs_checksum(options)) codecs.push_back({{"name", "crc32c"}});
     return {{"zarr_format", 3},
             {"node_type", "array"},

@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (file < 0) return 0;
     if (write(file, data, size) == static_cast<ssize_t>(size)) {
         try {
-            const PlyMesh mesh = ply_mesh("/proc/self/fd/" + std::to_string(file));
+            const PolygonMesh mesh = ply_mesh("/proc/self/fd/" + std::to_string(file));
             // Nothing comes from nowhere: an entry takes a byte or more of the file.
             require(mesh.vertices.size() + mesh.faces.size() <= size);
         } catch (const Failure& failure) {

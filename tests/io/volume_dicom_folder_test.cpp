@@ -5,21 +5,14 @@
 #include <cmath>
 
 #include "support/random.hpp"
-#include "volume_dicom_slice.hpp"
+#include "volume_dicom_changed.hpp"
 
 namespace palpate::io::test {
 namespace {
 
-TestSlice slice_number(int number) {
-    TestSlice slice;
-    slice.number = number;
-    slice.position = "10\\20\\" + std::to_string(2 * number);
-    return slice;
-}
-
 void put_slices(const ScratchFolder& folder, int count) {
     for (int i = 0; i < count; ++i) {
-        put_slice(folder / (std::to_string(i) + ".dcm"), slice_number(i));
+        put_slice(folder / (std::to_string(i) + ".dcm"), usual_slice(i));
     }
 }
 
@@ -39,7 +32,7 @@ TEST(dicom_folder, of_ten_thousand_slices_takes_time_in_proportion) {
         const auto time_of = [&](int count) {
             const ScratchFolder folder;
             for (int i = 0; i < count; ++i) {
-                TestSlice slice = slice_number(i);
+                TestSlice slice = usual_slice(i);
                 if (one_identity) slice.number = 1;
                 put_slice(folder / (std::to_string(i) + ".dcm"), slice);
             }
@@ -75,7 +68,7 @@ TEST(dicom_folder, a_single_slice_among_volumes_is_not_the_volume) {
 TEST(dicom_folder, an_empty_file_without_a_number_in_its_name_is_no_slice) {
     const ScratchFolder folder;
     for (const char* name : {"3FA9", "B120"}) {
-        put_slice(folder / name, slice_number(name[0]));
+        put_slice(folder / name, usual_slice(name[0]));
     }
     put_bytes(folder / "LOCKFILE", "");
     EXPECT_EQ(read_volume(folder.path()).volume.geometry().size[2], 2);
@@ -97,7 +90,7 @@ TEST(dicom_folder, a_slice_that_is_a_dangling_link_is_named) {
         EXPECT_TRUE(contains(refusal(folder.path()), "'3.dcm' is a link")) << "alone";
     }
     const ScratchFolder bare;  // slices without an extension
-    for (const int i : {1, 2}) put_slice(bare / ("IM" + std::to_string(i)), slice_number(i));
+    for (const int i : {1, 2}) put_slice(bare / ("IM" + std::to_string(i)), usual_slice(i));
     fs::create_symlink("gone", bare / "IM3");
     EXPECT_TRUE(contains(refusal(bare.path()), "'IM3' is a link")) << refusal(bare.path());
 }
@@ -105,7 +98,7 @@ TEST(dicom_folder, a_slice_that_is_a_dangling_link_is_named) {
 TEST(dicom_folder, a_packed_slice_is_named_as_such_in_a_folder_and_alone) {
     const ScratchFolder folder;
     put_slices(folder, 2);
-    put_gzip(folder / "2.dcm.gz", dicom_bytes(slice_number(2)));
+    put_gzip(folder / "2.dcm.gz", dicom_bytes(usual_slice(2)));
     EXPECT_TRUE(contains(refusal(folder.path()), "'2.dcm.gz' is packed"));
     EXPECT_TRUE(contains(refusal(folder / "2.dcm.gz"), "is packed"));
 }
@@ -120,12 +113,12 @@ TEST(dicom_folder, with_copies_of_its_slices_is_the_series_without_them_and_that
     EXPECT_EQ(some.volume.geometry().size, Index3(4, 3, 6));
     EXPECT_EQ(some.time_steps, 1);
     EXPECT_TRUE(contains(all_notes(some), "2 of its 8 files are copies")) << all_notes(some);
-    for (int i = 0; i < 6; ++i) put_slice(folder / ("again" + std::to_string(i)), slice_number(i));
+    for (int i = 0; i < 6; ++i) put_slice(folder / ("again" + std::to_string(i)), usual_slice(i));
     const VolumeFile all = read_volume(folder.path());
     EXPECT_EQ(all.time_steps, 1);
     EXPECT_EQ(all.volume.geometry().size, Index3(4, 3, 6));
     // The same identity, but not the same slice: the right one cannot be known.
-    TestSlice other = slice_number(2);
+    TestSlice other = usual_slice(2);
     other.pixels.assign(12, 7);
     put_slice(folder / "other.dcm", other);
     EXPECT_TRUE(contains(refusal(folder.path()), "same place"));
@@ -138,7 +131,7 @@ TEST(dicom_folder, of_tilted_slices_with_gaps_among_others_gives_the_body_in_its
     const auto body = [](const Vec3& p) { return 20000 + 300 * p[0] + 100 * p[1] + 50 * p[2]; };
     for (int i = 0; i < 12; ++i) {
         if (i == 4 || i == 7) continue;
-        TestSlice slice = slice_number(i);
+        TestSlice slice = usual_slice(i);
         slice.columns = 8;
         slice.rows = 12;
         slice.position = "10\\" + std::to_string(20 + i) + "\\" + std::to_string(2 * i);
@@ -176,7 +169,7 @@ TEST(dicom_folder, of_tilted_slices_with_gaps_among_others_gives_the_body_in_its
 
 TEST(dicom_folder, a_stack_of_frames_in_one_file_is_read_in_order) {
     const ScratchFolder folder;
-    TestSlice stack = slice_number(1);
+    TestSlice stack = usual_slice(1);
     stack.frames = 5;
     put_slice(folder / "stack.dcm", stack);
     for (const auto& path : {folder / "stack.dcm", folder.path()}) {
@@ -196,7 +189,7 @@ TEST(dicom_folder, a_stack_of_frames_in_one_file_is_read_in_order) {
 TEST(dicom_folder, a_size_that_its_samples_do_not_have_is_refused_or_said) {
     const ScratchFolder folder;
     const auto with_samples = [&](std::size_t count) {
-        TestSlice slice = slice_number(1);
+        TestSlice slice = usual_slice(1);
         slice.columns = 64;
         slice.rows = 64;
         std::string bytes = dicom_bytes(slice);
@@ -216,7 +209,7 @@ TEST(dicom_folder, a_size_that_its_samples_do_not_have_is_refused_or_said) {
     const VolumeFile file = read_volume(folder.path());
     EXPECT_TRUE(contains(all_notes(file), "10 bytes more of samples")) << all_notes(file);
     for (const char* frames : {"0", "-3", "3", "nonsense", "99999999"}) {
-        TestSlice slice = slice_number(1);
+        TestSlice slice = usual_slice(1);
         slice.frames = 12345678;  // eight digits to be replaced
         slice.pixels.assign(12, 1);
         slice.columns = 0;  // no samples are made

@@ -84,7 +84,7 @@ TEST(Bounds, an_xml_document_costs_the_helper_no_more_than_may_be_used) {
         R"(<OME><Image><Pixels DimensionOrder="XYZCT" SizeX="16" SizeY="16"/>)";
     put_tiff(folder / "small.tif", start + "</Image></OME>");
     put_tiff(folder / "large.tif", start + "</Image>" + many + "</OME>");
-    fs::copy(hdf5_written() / "lonely.h5", folder / "large.h5");
+    fs::copy(written_by("hdf5") / "lonely.h5", folder / "large.h5");
     put_bytes(folder / "large.xml", "<SpimData>" + many + "</SpimData>");
     StoreOptions options;
     options.unpacking = 128 * megabyte;
@@ -104,8 +104,7 @@ TEST(Bounds, an_xml_document_costs_the_helper_no_more_than_may_be_used) {
     EXPECT_EQ(open_store(folder / "element.tif", more)->info().format, "OME-TIFF");
     const auto work = [&] {
         for (const char* name : {"large.tif", "large.h5"}) {
-            const std::string message =
-                message_of<io::InputError>([&] { (void)open_store(folder / name, options); });
+            const std::string message = refusal(folder / name, options);
             if (!contains(message, "too large for the memory")) throw std::runtime_error(message);
         }
         rusage used{};
@@ -261,10 +260,8 @@ TEST(Bounds, metadata_take_no_more_memory_than_may_be_used_and_are_held_once) {
         EXPECT_EQ(support::end_of(support::start_process(work)), 0);
     }
     for (const std::string name : {"large", "large.n5"}) {
-        const std::string message =
-            message_of<io::InputError>([&] { (void)open_store(folder / name, options); });
-        EXPECT_TRUE(contains(message, "its values take more than 30 MiB; allow more memory"))
-            << message;
+        expect_refusal("its values take more than 30 MiB; allow more memory", folder / name,
+                       options);
         EXPECT_NO_THROW((void)open_store(folder / name)) << name;
     }
 }
@@ -292,13 +289,9 @@ TEST(Bounds, files_of_metadata_that_are_read_at_once_share_what_may_be_used) {
     StoreOptions options;
     options.unpacking = 128 * megabyte;
     for (const std::string name : {"many.zarr", "many.n5"}) {
-        const auto refused = [&](const std::string& address) {
-            return message_of<io::InputError>([&] { (void)open_store(address, options); });
-        };
         for (const std::string& address : {std::string(folder / name), server.address(name)}) {
-            const std::string said = refused(address);
-            EXPECT_TRUE(contains(said, "its metadata allow; copy it again, or allow more memory"))
-                << said;
+            expect_refusal("its metadata allow; copy it again, or allow more memory", address,
+                           options);
         }
     }
 }

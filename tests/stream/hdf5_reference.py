@@ -6,15 +6,13 @@
 """
 
 import itertools
-import os
 import struct
-import sys
 
 import h5py
 import numcodecs
 import numpy
 
-from zarr_reference import SHAPE, expect, put, samples
+from zarr_reference import SHAPE, expect, put, run, samples
 
 
 def letters(text):
@@ -194,15 +192,4 @@ def write_refused(folder):
         put_extent(file)
 
 
-def main():
-    if sys.argv[1] == "write":
-        folder = sys.argv[2]
-        os.makedirs(folder, exist_ok=True)
-        for write in (write_kinds, write_image, write_missing, write_bdv, write_refused):
-            write(folder)
-    elif sys.argv[1] == "dump":
-        data = h5py.File(sys.argv[2], "r")[sys.argv[3]][...]
-        sys.stdout.buffer.write(numpy.ascontiguousarray(data).tobytes())
-
-
-main()
+run((write_kinds, write_image, write_missing, write_bdv, write_refused), lambda file, dataset: h5py.File(file, "r")[dataset][...])

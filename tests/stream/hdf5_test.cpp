@@ -5,7 +5,6 @@
 
 #include "io/real_volumes.hpp"
 #include "io/volume_support.hpp"
-#include "stream/store_support.hpp"
 #include "stream/written_files.hpp"
 
 namespace palpate::stream::test {
@@ -19,17 +18,8 @@ using support::contains;
 using support::message_of;
 using support::ScratchFolder;
 
-void expect_level(const Store& store, int level, const std::string& raw, Stored stored) {
-    const Geometry& grid = store.info().levels.at(static_cast<std::size_t>(level)).geometry;
-    expect_same_boxes(
-        store, expected_volume(grid, bytes_of(hdf5_written() / (raw + ".raw")), stored), 4, level);
-}
-
-/// By the end of a file's name: "...-i2.ims".
-Stored type_in(const std::string& name) {
-    const std::string type = name.substr(name.rfind('-') + 1, 2);
-    const std::string kind = type[0] == 'u' ? "uint" : type[0] == 'i' ? "int" : "float";
-    return *io::stored_named(kind + std::to_string(8 * (type[1] - '0')));
+const fs::path& hdf5_written() {
+    return written_by("hdf5");
 }
 
 TEST(Hdf5, every_type_and_filter_reads_as_another_program_wrote_it) {
@@ -43,7 +33,7 @@ TEST(Hdf5, every_type_and_filter_reads_as_another_program_wrote_it) {
         EXPECT_EQ(store->info().levels.at(0).geometry.size, Index3(17, 13, 11));
         EXPECT_TRUE(store->info().levels[0].geometry.spacing.isApprox(Vec3(2e-3, 2e-3, 3e-3)));
         EXPECT_TRUE(store->info().levels[0].geometry.origin.isApprox(Vec3(11e-3, 21e-3, 31.5e-3)));
-        expect_level(*store, 0, name, type_in(name));
+        expect_level(*store, 0, hdf5_written() / name, stored_in(name));
         ++files;
     }
     EXPECT_EQ(files, 24 + 9);
@@ -68,10 +58,7 @@ TEST(Hdf5, the_range_of_an_imaris_histogram_holds_every_sample) {
 TEST(Hdf5, levels_channels_and_times_of_imaris_are_those_of_its_attributes) {
     for (int time = 0; time < 3; ++time) {
         for (int channel = 0; channel < 2; ++channel) {
-            StoreOptions options;
-            options.time = time;
-            options.channel = channel;
-            const auto store = open_store(hdf5_written() / "image.ims", options);
+            const auto store = open_store(hdf5_written() / "image.ims", choice_of(channel, time));
             const StoreInfo& info = store->info();
             EXPECT_EQ(info.format, "Imaris");
             EXPECT_EQ(info.times, 3);
@@ -86,34 +73,26 @@ TEST(Hdf5, levels_channels_and_times_of_imaris_are_those_of_its_attributes) {
                 EXPECT_TRUE(grid.spacing.isApprox(finest.cwiseProduct(factors[level])));
                 EXPECT_TRUE(grid.origin.isApprox(corner + grid.spacing / 2));
                 expect_level(*store, level,
-                             "image-" + std::to_string(level) + "-" + std::to_string(time) + "-" +
-                                 std::to_string(channel),
+                             hdf5_written() / numbered("image", {level, time, channel}),
                              Stored::uint16);
             }
         }
     }
-    StoreOptions beyond;
-    beyond.time = 3;
-    EXPECT_TRUE(contains(
-        message_of<io::InputError>([&] { (void)open_store(hdf5_written() / "image.ims", beyond); }),
-        "no time 3: it has 3"));
+    expect_refusal("no time 3: it has 3", hdf5_written() / "image.ims", choice_of(0, 3));
 }
 
 TEST(Hdf5, a_chunk_that_is_not_stored_has_the_fill_value) {
     const auto store = open_store(hdf5_written() / "missing.ims");
     EXPECT_EQ(store->info().fill, -7);
-    expect_level(*store, 0, "missing", Stored::int16);
+    expect_level(*store, 0, hdf5_written() / "missing", Stored::int16);
     EXPECT_TRUE(contains(store->info().notes.at(0), "micrometres were taken"));
 }
 
 TEST(Hdf5, setups_and_times_of_bigdataviewer_are_channels_and_times_with_the_xml_s_voxels) {
     for (int time = 0; time < 2; ++time) {
         for (int setup = 0; setup < 2; ++setup) {
-            StoreOptions options;
-            options.time = time;
-            options.channel = setup;
             for (const char* name : {"bdv.h5", "lonely.h5"}) {
-                const auto store = open_store(hdf5_written() / name, options);
+                const auto store = open_store(hdf5_written() / name, choice_of(setup, time));
                 const StoreInfo& info = store->info();
                 const bool lonely = std::string(name) == "lonely.h5";
                 EXPECT_EQ(info.channels.at(0), lonely ? "setup 0" : "left");
@@ -127,8 +106,7 @@ TEST(Hdf5, setups_and_times_of_bigdataviewer_are_channels_and_times_with_the_xml
                     spacing.cwiseProduct(Vec3(0.5, 0.5, 0))));
                 for (int level = 0; level < 2; ++level) {
                     expect_level(*store, level,
-                                 "bdv-" + std::to_string(level) + "-" + std::to_string(time) + "-" +
-                                     std::to_string(setup),
+                                 hdf5_written() / numbered("bdv", {level, time, setup}),
                                  Stored::uint16);
                 }
             }
@@ -144,9 +122,7 @@ TEST(Hdf5, voxels_of_bigdataviewer_in_pixels_are_not_measured) {
         std::string text = xml;
         text.replace(text.find("<unit>mm"), 8, std::string("<unit>") + unit);
         support::put_bytes(folder / "bdv.xml", text);
-        StoreOptions options;
-        options.channel = 1;
-        const auto store = open_store(folder / "bdv.h5", options);
+        const auto store = open_store(folder / "bdv.h5", choice_of(1, 0));
         EXPECT_EQ(store->info().levels.at(0).geometry.measured, measured) << unit;
         EXPECT_EQ(store->info().levels[0].geometry.spacing, Vec3(1, 2, 3));
         EXPECT_EQ(store->info().notes.size(), measured ? 0U : 1U);
@@ -158,9 +134,11 @@ TEST(Hdf5, a_public_file_of_imaris_reads_as_h5py_reads_it) {
     if (!fs::exists(file)) GTEST_SKIP() << "no sample file";
     const ScratchFolder folder;
     const std::string raw = folder / "all.raw";
-    ASSERT_EQ(std::system(h5py("dump " + file.string() +
-                               " '/DataSet/ResolutionLevel 0/TimePoint 0/Channel 0/Data' > " + raw)
-                              .c_str()),
+    ASSERT_EQ(std::system(
+                  reference("hdf5",
+                            "dump " + file.string() +
+                                " '/DataSet/ResolutionLevel 0/TimePoint 0/Channel 0/Data' > " + raw)
+                      .c_str()),
               0);
     const auto store = open_store(file);
     const Geometry& grid = store->info().levels.at(0).geometry;
@@ -181,7 +159,7 @@ TEST(Hdf5, what_is_not_read_is_refused_with_what_is_wrong) {
         {"link", "lies in another file"}};
     for (const auto& [name, what] : wrong) {
         const fs::path file = hdf5_written() / ("refused-" + std::string(name) + ".ims");
-        const std::string message = message_of<io::InputError>([&] { (void)open_store(file); });
+        const std::string message = refusal(file);
         EXPECT_TRUE(contains(message, what)) << message;
         EXPECT_TRUE(io::test::one_line_about(message, file)) << message;
     }

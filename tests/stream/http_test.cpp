@@ -145,8 +145,7 @@ TEST(Http, a_missing_chunk_is_fill_and_missing_metadata_an_error) {
     const Volume volume = volume_of(*store);
     EXPECT_EQ(volume.sample(Index3(0, 0, 0)), 'x');
     EXPECT_EQ(volume.sample(Index3(0, 0, 3)), 9);
-    const std::string message =
-        message_of<io::InputError>([&] { (void)open_store(server.address("no.zarr"), quick()); });
+    const std::string message = refusal(server.address("no.zarr"), quick());
     EXPECT_TRUE(contains(message, "has no metadata of Zarr")) << message;
     EXPECT_TRUE(contains(message, "download a file of another format")) << message;
 }
@@ -203,8 +202,7 @@ TEST(Http, endless_redirections_other_protocols_and_silent_hosts_are_errors_in_o
     for (const std::string& address :
          {server.address("loop"), server.address("file"), std::string("http://127.0.0.1:9/a.zarr"),
           std::string("s3://")}) {
-        const std::string message =
-            message_of<io::InputError>([&] { (void)open_store(address, options); });
+        const std::string message = refusal(address, options);
         EXPECT_TRUE(message.starts_with(address)) << message;
     }
 }

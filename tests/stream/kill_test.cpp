@@ -75,6 +75,13 @@ struct Edits {
         const auto samples = edited(empty_samples(*store, some_volume(), 0), fill, read).samples;
         save_edits(*store, {original, {}}, 0, *samples, out, {});
     }
+    /// That, on a system that perhaps cannot exchange two names.
+    std::function<void()> saving(int value, bool can_exchange) const {
+        return [this, value, can_exchange] {
+            if (!can_exchange) deny_exchange();
+            save(value);
+        };
+    }
     void save_elsewhere(int value) const {
         done_elsewhere([&] { save(value); });
     }
@@ -144,12 +151,7 @@ TEST_F(Killed, a_conversion_leaves_nothing_or_all_and_the_next_one_completes_it)
 TEST_F(Killed, saving_edits_leaves_the_old_ones_or_the_new_ones) {
     const Edits edits;
     for (const bool can_exchange : {true, false}) {
-        const auto save = [&](int value) {
-            return [&, value] {
-                if (!can_exchange) deny_exchange();
-                edits.save(value);
-            };
-        };
+        const auto save = [&](int value) { return edits.saving(value, can_exchange); };
         edits.save_elsewhere(1);
         const int calls = calls_of(save(1), any);
         std::mt19937 random(2);
@@ -213,12 +215,7 @@ TEST_F(Killed, a_rename_that_fails_costs_neither_the_old_edits_nor_the_new_ones)
     const auto renames = [](const FileCall& call) { return call.renames; };
     for (const bool can_exchange : {true, false}) {
         const Edits edits;
-        const auto save = [&](int value) {
-            return [&, value] {
-                if (!can_exchange) deny_exchange();
-                edits.save(value);
-            };
-        };
+        const auto save = [&](int value) { return edits.saving(value, can_exchange); };
         edits.save_elsewhere(1);
         const int calls = calls_of(save(1), renames);
         int failed = 0, rescued = 0;

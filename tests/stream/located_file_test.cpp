@@ -44,7 +44,7 @@ std::set<pid_t> children() {
 
 /// A file in memory that notes what is read of it.
 struct FarFile {
-    std::string bytes = support::bytes_of(hdf5_written() / "image.ims");
+    std::string bytes = support::bytes_of(written_by("hdf5") / "image.ims");
     std::mutex mutex = {};
     std::vector<std::pair<std::uint64_t, std::uint64_t>> read = {};
     std::function<void()> before = {};  ///< what happens while it is read
@@ -108,7 +108,7 @@ std::array<std::int64_t, 3> chunks_of(const io::ImageArray& array) {
 
 /// PyTorch's loaders, for one, fork with stores open.
 TEST(LocatedFile, a_fork_has_a_helper_of_its_own_and_leaves_that_of_its_parent) {
-    auto file = std::make_unique<io::ChunkFile>(hdf5_written() / "image.ims");
+    auto file = std::make_unique<io::ChunkFile>(written_by("hdf5") / "image.ims");
     const io::ChunkedImage image = file->describe(0, 0);
     const std::set<pid_t> helper = children();
     ASSERT_EQ(helper.size(), 1U);
@@ -130,7 +130,7 @@ TEST(LocatedFile, a_fork_has_a_helper_of_its_own_and_leaves_that_of_its_parent) 
 TEST(LocatedFile, one_helper_answers_all_questions_and_gets_each_page_once) {
     FarFile far;
     io::ChunkFile there = far.file();
-    io::ChunkFile here(hdf5_written() / "image.ims");
+    io::ChunkFile here(written_by("hdf5") / "image.ims");
     std::set<pid_t> helpers;
     {
         // In a thread that ends, as opening does.
@@ -157,11 +157,11 @@ TEST(LocatedFile, one_helper_answers_all_questions_and_gets_each_page_once) {
 }
 
 TEST(LocatedFile, a_helper_that_the_system_has_ended_is_replaced) {
-    const auto store = open_store((hdf5_written() / "image.ims").string());
+    const auto store = open_store((written_by("hdf5") / "image.ims").string());
     const std::set<pid_t> helpers = children();
     ASSERT_EQ(helpers.size(), 1U);
     ASSERT_EQ(::kill(*helpers.begin(), SIGKILL), 0);
-    const auto again = open_store((hdf5_written() / "image.ims").string());
+    const auto again = open_store((written_by("hdf5") / "image.ims").string());
     EXPECT_EQ(volume_of(*store).maximum(), volume_of(*again).maximum());
     EXPECT_FALSE(children().contains(*helpers.begin()));
 }
@@ -230,7 +230,7 @@ TEST(LocatedFile, who_is_stopped_while_a_part_is_fetched_asks_no_more_and_the_ne
 TEST(LocatedFile, who_waits_for_its_turn_stops_while_another_one_still_reads) {
     FarFile far;
     const auto located = std::make_shared<LocatedFile>(far.file(), "image.ims");
-    const auto objects = folder_objects(hdf5_written());
+    const auto objects = folder_objects(written_by("hdf5"));
     const ChunkedArray array = located_volume(located->file.describe(0, 0), located, {}).arrays[0];
     ASSERT_EQ(::kill(*children().begin(), SIGKILL), 0);  // the next one reads all anew
     const ChunkReader one(objects, array), other(objects, array);
@@ -260,7 +260,7 @@ TEST(LocatedFile, threads_share_the_turns_of_a_file_and_the_stop_of_one_is_not_t
     std::vector<std::optional<Bytes>> right;
     constexpr std::array<std::int64_t, 3> chunk{};
     for (const auto& array : located_volume(located->file.describe(0, 0), located, {}).arrays) {
-        const auto objects = folder_objects(hdf5_written());
+        const auto objects = folder_objects(written_by("hdf5"));
         right.push_back(ChunkReader(objects, array).chunk(chunk, {}));
         readers.push_back(std::make_unique<ChunkReader>(objects, array));
     }
@@ -294,7 +294,7 @@ TEST(LocatedFile, a_helper_ends_with_its_caller) {
     ASSERT_EQ(::pipe2(pipe, O_CLOEXEC), 0);
     const pid_t caller = ::fork();
     if (caller == 0) {
-        io::ChunkFile file(hdf5_written() / "image.ims");
+        io::ChunkFile file(written_by("hdf5") / "image.ims");
         (void)file.describe(0, 0);
         const pid_t helper = *children().begin();
         (void)!::write(pipe[1], &helper, sizeof helper);

@@ -2,22 +2,20 @@
 """Independent writer of N5 for the tests, by zarr's N5Store. Features of Java programs that it lacks are
 written by the specification: blocks that are cut at the array's end, lz4 of lz4-java, zstd without a size.
 
-  n5_reference.py FOLDER    stores of many kinds, each with its samples in NAME.raw
+  n5_reference.py write FOLDER    stores of many kinds, each with its samples in NAME.raw
 """
 
 import gzip
 import itertools
 import json
-import os
 import struct
-import sys
 import warnings
 
 import numcodecs
 import numpy
 import zarr
 
-from zarr_reference import SHAPE, expect, put, put_json, samples
+from zarr_reference import SHAPE, expect, put, put_json, run, samples
 
 COMPRESSORS = {
     "raw": None,
@@ -179,12 +177,5 @@ def write_axes(folder):
     expect(folder, "four", data[1])
 
 
-def main():
-    warnings.simplefilter("ignore")  # that other programs may not know blosc
-    folder = sys.argv[1]
-    os.makedirs(folder, exist_ok=True)
-    for write in (write_by_zarr, write_cut, write_groups, write_bdv, write_channels, write_axes):
-        write(folder)
-
-
-main()
+warnings.simplefilter("ignore")  # that other programs may not know blosc
+run((write_by_zarr, write_cut, write_groups, write_bdv, write_channels, write_axes))

@@ -3,8 +3,8 @@
 #include <filesystem>
 
 #include "io/volume_support.hpp"
-#include "stream/store_support.hpp"
 #include "stream/volume_server.hpp"
+#include "stream/written_files.hpp"
 
 namespace palpate::stream::test {
 namespace {
@@ -18,26 +18,11 @@ using support::put_bytes;
 using support::ScratchFolder;
 
 const fs::path& n5_written() {
-    static const ScratchFolder folder;
-    static const bool done =
-        std::system((std::string(PALPATE_ZARR_PYTHON) + " -B " + PALPATE_STREAM_TESTS +
-                     "/n5_reference.py " + folder.path().string())
-                        .c_str()) == 0;
-    if (!done) throw std::runtime_error("python3-zarr does not work");
-    return folder.path();
-}
-
-/// By the end of a store's name: "...-i2.n5".
-Stored stored_in(const std::string& name) {
-    const std::string type = name.substr(name.rfind('-') + 1, 2);
-    const std::string kind = type[0] == 'u' ? "uint" : type[0] == 'i' ? "int" : "float";
-    return *io::stored_named(kind + std::to_string(8 * (type[1] - '0')));
+    return written_by("n5");
 }
 
 void expect_samples(const Store& store, int level, const std::string& raw, Stored stored) {
-    const Geometry& grid = store.info().levels.at(static_cast<std::size_t>(level)).geometry;
-    expect_same_boxes(store, expected_volume(grid, bytes_of(n5_written() / (raw + ".raw")), stored),
-                      3, level);
+    expect_level(store, level, n5_written() / raw, stored);
 }
 
 TEST(N5, every_type_and_compression_reads_as_another_program_wrote_it_whole_blocks_and_cut_ones) {
@@ -84,47 +69,33 @@ TEST(N5, levels_have_the_scales_and_places_of_each_programs_attributes) {
 TEST(N5, setups_and_times_of_bigdataviewer_are_channels_and_times) {
     for (int setup = 0; setup < 2; ++setup) {
         for (int time = 0; time < 3; ++time) {
-            StoreOptions options;
-            options.channel = setup;
-            options.time = time;
-            const auto store = open_store(n5_written() / "bdv.n5", options);
+            const auto store = open_store(n5_written() / "bdv.n5", choice_of(setup, time));
             const StoreInfo& info = store->info();
             EXPECT_EQ(info.times, 3);
             EXPECT_EQ(info.channels, (std::vector<std::string>{"setup 0", "setup 1"}));
             EXPECT_EQ(info.levels.at(1).geometry.spacing, Vec3(1, 1, 2));
             for (int level = 0; level < 2; ++level) {
-                expect_samples(*store, level,
-                               "bdv-" + std::to_string(setup) + "-" + std::to_string(time) + "-" +
-                                   std::to_string(level),
+                expect_samples(*store, level, numbered("bdv", {setup, time, level}),
                                Stored::uint16);
             }
         }
     }
-    StoreOptions last;
-    last.time = 2;
-    const auto setup = open_store(n5_written() / "bdv.n5/setup1", last);
+    const auto setup = open_store(n5_written() / "bdv.n5/setup1", choice_of(0, 2));
     EXPECT_EQ(setup->info().times, 3);
     expect_samples(*setup, 0, "bdv-1-2-0", Stored::uint16);
     const auto moment = open_store(n5_written() / "bdv.n5/setup1/timepoint1");
     expect_samples(*moment, 0, "bdv-1-1-0", Stored::uint16);
-    last.time = 3;
-    const std::string message =
-        message_of<io::InputError>([&] { (void)open_store(n5_written() / "bdv.n5", last); });
-    EXPECT_TRUE(contains(message, "no time 3: it has 3")) << message;
+    expect_refusal("no time 3: it has 3", n5_written() / "bdv.n5", choice_of(0, 3));
 }
 
 TEST(N5, channels_of_n5_viewer_and_axes_by_name_or_by_their_number) {
-    StoreOptions options;
-    options.channel = 1;
-    const auto channels = open_store(n5_written() / "channels.n5", options);
+    const auto channels = open_store(n5_written() / "channels.n5", choice_of(1, 0));
     EXPECT_EQ(channels->info().channels.size(), 2U);
     EXPECT_EQ(channels->info().levels.at(1).geometry.spacing, Vec3(2, 4, 3));
     expect_samples(*channels, 0, "channels-1", Stored::uint16);
-    const auto four = open_store(n5_written() / "four.n5", options);
+    const auto four = open_store(n5_written() / "four.n5", choice_of(1, 0));
     expect_samples(*four, 0, "four", Stored::uint8);
-    options.channel = 2;
-    options.time = 1;
-    const auto named = open_store(n5_written() / "axes.n5", options);
+    const auto named = open_store(n5_written() / "axes.n5", choice_of(2, 1));
     EXPECT_EQ(named->info().times, 2);
     expect_samples(*named, 0, "axes", Stored::uint8);
 }
@@ -137,9 +108,8 @@ TEST(N5, over_http_it_is_found_by_its_name_or_without_it) {
     fs::copy(n5_written() / "group-scales.n5", folder / "scales", fs::copy_options::recursive);
     const VolumeServer other({"--folder", folder.path().string()});
     expect_samples(*open_store(other.address("scales")), 1, "group-1", Stored::uint16);
-    EXPECT_TRUE(
-        contains(message_of<io::InputError>([&] { (void)open_store(server.address("absent.n5")); }),
-                 "has no metadata of Zarr (zarr.json, .zgroup, .zarray) or N5"));
+    expect_refusal("has no metadata of Zarr (zarr.json, .zgroup, .zarray) or N5",
+                   server.address("absent.n5"));
 }
 
 TEST(N5, mutated_and_truncated_stores_are_refused_in_one_line_or_read) {
@@ -153,11 +123,12 @@ TEST(N5, mutated_and_truncated_stores_are_refused_in_one_line_or_read) {
     EXPECT_GT(refused, tried / 3);
 }
 
+constexpr const char* one_block =
+    R"({"dimensions":[2,2,2],"blockSize":[2,2,2],"dataType":"uint8","compression":{"type":"raw"}})";
+
 /// A dataset of one raw block of 2 x 2 x 2 bytes with these bytes, and these attributes.
 void put_dataset(const fs::path& folder, const std::string& block,
-                 const std::string& attributes =
-                     R"({"dimensions":[2,2,2],"blockSize":[2,2,2],"dataType":"uint8",)"
-                     R"("compression":{"type":"raw"}})") {
+                 const std::string& attributes = one_block) {
     fs::create_directories(folder / "0/0");
     put_bytes(folder / "attributes.json", attributes);
     put_bytes(folder / "0/0/0", block);
@@ -198,29 +169,22 @@ TEST(N5, blocks_that_are_not_possible_are_refused_with_what_is_wrong) {
 
 TEST(N5, attributes_that_are_not_possible_are_refused_with_what_is_wrong) {
     struct Wrong {
-        const char* attributes;
-        const char* what;
+        const char *from, *to, *what;
     };
-    for (
-        const Wrong& wrong : std::vector<Wrong>{
-            {R"({"dimensions":[2,2,2],"blockSize":[2,2],"dataType":"uint8","compression":{"type":"raw"}})",
-             "do not agree"},
-            {R"({"dimensions":[2,2,0],"blockSize":[2,2,2],"dataType":"uint8","compression":{"type":"raw"}})",
-             "size in its metadata is not possible"},
-            {R"({"dimensions":[2,2,2],"blockSize":[2,2,2],"dataType":"string","compression":{"type":"raw"}})",
-             "type 'string'"},
-            {R"({"dimensions":[2,2,2],"blockSize":[2,2,2],"dataType":"uint8","compression":{"type":"bzip2"}})",
-             "'bzip2' is not read"},
-            {R"({"dimensions":[2,2,2],"blockSize":[9999,9999,9999],"dataType":"uint8","compression":{"type":"raw"}})",
-             "more than 1 GiB"},
-            {R"({"dimensions":[2,2,2],"blockSize":[2,2,2],"dataType":"uint8"})",
-             "lack what they need"},
-            {R"({"n5":"2.0"})", "a group of N5 without samples"},
-            {"{", "is not JSON"}}) {
+    for (const Wrong& wrong : std::vector<Wrong>{
+             {"[2,2,2],\"dataType", "[2,2],\"dataType", "do not agree"},
+             {"[2,2,2]", "[2,2,0]", "size in its metadata is not possible"},
+             {"uint8", "string", "type 'string'"},
+             {"raw", "bzip2", "'bzip2' is not read"},
+             {"[2,2,2],\"dataType", "[9999,9999,9999],\"dataType", "more than 1 GiB"},
+             {R"(,"compression":{"type":"raw"})", "", "lack what they need"},
+             {one_block, R"({"n5":"2.0"})", "a group of N5 without samples"},
+             {one_block, "{", "is not JSON"}}) {
+        std::string attributes = one_block;
+        attributes.replace(attributes.find(wrong.from), std::strlen(wrong.from), wrong.to);
         const ScratchFolder folder;
-        put_dataset(folder / "a.n5", "", wrong.attributes);
-        const std::string message =
-            message_of<io::InputError>([&] { (void)open_store(folder / "a.n5"); });
+        put_dataset(folder / "a.n5", "", attributes);
+        const std::string message = refusal(folder / "a.n5");
         EXPECT_TRUE(contains(message, wrong.what)) << message;
         EXPECT_TRUE(io::test::one_line_about(message, folder / "a.n5") ||
                     contains(message, "a.n5/attributes.json"));

@@ -52,6 +52,33 @@ std::string refusal(const Store& store, const fs::path& out) {
         [&] { (void)convert_to_zarr(store, 0, out, small_chunks()); });
 }
 
+/// A store and edits of it, which are saved.
+struct EditedOriginal {
+    ScratchFolder folder;
+    std::shared_ptr<const Store> store;
+    std::shared_ptr<const Samples> edits;
+
+    EditedOriginal() {
+        put_original(1);
+        store = open_store(folder / "v.zarr");
+        const ReadSamples read = [&](const SampleBox& box, std::span<std::byte> to) {
+            store->read(0, box, to, {});
+        };
+        const edit::Fill fill{{{3, 3, 3}, {9, 9, 9}}, 7};
+        edits = edited(empty_samples(*store, noise(1), 0), fill, read).samples;
+    }
+    void put_original(std::uint64_t seed) const {
+        fs::remove_all(folder / "v.zarr");
+        (void)convert_to_zarr(*store_of(noise(seed), "v"), 0, folder / "v.zarr", small_chunks());
+    }
+    void save(const fs::path& out, const std::string& content = {}, bool is_rescue = false) const {
+        save_edits(*store, {folder / "v.zarr", {}, content, is_rescue}, 0, *edits, out, {});
+    }
+    std::byte sample_in(const fs::path& saved) const {
+        return read_box(*open_store(saved), 0, {{5, 5, 5}, {5, 5, 5}})[0];
+    }
+};
+
 /// Every name below a folder, with the bytes of files.
 std::map<std::string, std::string> all_in(const fs::path& folder) {
     std::map<std::string, std::string> all;
@@ -182,28 +209,21 @@ TEST(OwnFiles, a_foreign_file_at_any_depth_of_a_partial_stays) {
 }
 
 TEST(OwnFiles, saving_edits_touches_no_partial_whoever_made_it) {
-    const ScratchFolder folder, precious;
+    const ScratchFolder precious;
     put_bytes(precious / "thesis.txt", "years");
-    const Volume volume = noise(1);
-    const auto store = store_of(volume, "v");
-    (void)convert_to_zarr(*store, 0, folder / "v.zarr", small_chunks());
-    const auto original = open_store(folder / "v.zarr");
-    const auto read = [&](const SampleBox& box, std::span<std::byte> to) {
-        original->read(0, box, to, {});
-    };
-    const auto edits =
-        edited(empty_samples(*original, volume, 0), edit::Fill{{{3, 3, 3}, {9, 9, 9}}, 7}, read);
+    const EditedOriginal edits;
+    const ScratchFolder& folder = edits.folder;
     for (const bool is_link : {false, true}) {
         const fs::path out = folder / (is_link ? "link.zarr" : "edits.zarr");
         const fs::path partial = out.string() + ".partial";
         if (is_link) {
             fs::create_directory_symlink(precious.path(), partial);
         } else {
-            leave_behind(*store, out);  // an interrupted conversion to the same name
+            leave_behind(*store_of(noise(1), "v"), out);  // an interrupted conversion
         }
         const auto before = all_in(partial);
-        save_edits(*original, {folder / "v.zarr", {}}, 0, *edits.samples, out, {});
-        EXPECT_EQ(read_box(*open_store(out), 0, {{5, 5, 5}, {5, 5, 5}})[0], std::byte{7});
+        edits.save(out);
+        EXPECT_EQ(edits.sample_in(out), std::byte{7});
         EXPECT_EQ(all_in(partial), before);
     }
     EXPECT_EQ(bytes_of(precious / "thesis.txt"), "years");
@@ -213,10 +233,8 @@ TEST(OwnFiles, saving_edits_touches_no_partial_whoever_made_it) {
         const fs::path file = folder / ("edits.zarr/" + place);
         fs::create_directories(file.parent_path());
         put_bytes(file, "mine");
-        const std::string message = message_of<io::OutputError>([&] {
-            save_edits(*original, {folder / "v.zarr", {}}, 0, *edits.samples, folder / "edits.zarr",
-                       {});
-        });
+        const std::string message =
+            message_of<io::OutputError>([&] { edits.save(folder / "edits.zarr"); });
         EXPECT_TRUE(contains(message, place.substr(0, place.find('/')))) << message;
         EXPECT_EQ(bytes_of(file), "mine");
         fs::remove(file);
@@ -226,22 +244,12 @@ TEST(OwnFiles, saving_edits_touches_no_partial_whoever_made_it) {
 }
 
 TEST(OwnFiles, a_folder_whose_note_of_edits_is_not_of_palpate_is_not_replaced) {
-    const ScratchFolder folder;
-    const Volume volume = noise(1);
-    const auto store = store_of(volume, "v");
-    (void)convert_to_zarr(*store, 0, folder / "v.zarr", small_chunks());
-    const auto original = open_store(folder / "v.zarr");
-    const auto read = [&](const SampleBox& box, std::span<std::byte> to) {
-        original->read(0, box, to, {});
-    };
-    const auto edits =
-        edited(empty_samples(*original, volume, 0), edit::Fill{{{3, 3, 3}, {9, 9, 9}}, 7}, read);
-    (void)convert_to_zarr(*store, 0, folder / "other.zarr", small_chunks());
+    const EditedOriginal edits;
+    const ScratchFolder& folder = edits.folder;
+    (void)convert_to_zarr(*edits.store, 0, folder / "other.zarr", small_chunks());
     put_bytes(folder / "other.zarr/palpate-edits.json", "");
     const auto before = all_in(folder / "other.zarr");
-    EXPECT_THROW(save_edits(*original, {folder / "v.zarr", {}}, 0, *edits.samples,
-                            folder / "other.zarr", {}),
-                 io::OutputError);
+    EXPECT_THROW(edits.save(folder / "other.zarr"), io::OutputError);
     EXPECT_EQ(all_in(folder / "other.zarr"), before);
 }
 
@@ -308,49 +316,27 @@ TEST(OwnFiles, an_interrupted_run_is_continued_for_the_same_settings_only) {
 }
 
 TEST(OwnFiles, edits_do_not_open_over_another_volume_in_the_originals_place) {
-    const ScratchFolder folder;
-    const auto put_original = [&](std::uint64_t seed) {
-        fs::remove_all(folder / "v.zarr");
-        (void)convert_to_zarr(*store_of(noise(seed), "v"), 0, folder / "v.zarr", small_chunks());
-    };
-    put_original(1);
-    const auto original = open_store(folder / "v.zarr");
-    const auto edits = edited(
-        empty_samples(*original, noise(1), 0), edit::Fill{{{3, 3, 3}, {9, 9, 9}}, 7},
-        [&](const SampleBox& box, std::span<std::byte> to) { original->read(0, box, to, {}); });
-    save_edits(*original, {folder / "v.zarr", {}}, 0, *edits.samples, folder / "e.zarr", {});
-    put_original(2);
-    const std::string message =
-        message_of<io::InputError>([&] { (void)open_store(folder / "e.zarr"); });
-    EXPECT_TRUE(contains(message, "holds other data")) << message;
-    put_original(1);  // made anew, the same: a copy on another disk must do
-    EXPECT_EQ(read_box(*open_store(folder / "e.zarr"), 0, {{5, 5, 5}, {5, 5, 5}})[0], std::byte{7});
+    const EditedOriginal edits;
+    const fs::path out = edits.folder / "e.zarr";
+    edits.save(out);
+    edits.put_original(2);
+    expect_refusal("holds other data", out);
+    edits.put_original(1);  // made anew, the same: a copy on another disk must do
+    EXPECT_EQ(edits.sample_in(out), std::byte{7});
 }
 
 TEST(OwnFiles, edits_of_an_original_that_was_replaced_meanwhile_are_only_rescued) {
-    const ScratchFolder folder;
-    const auto put_original = [&](std::uint64_t seed) {
-        fs::remove_all(folder / "v.zarr");
-        (void)convert_to_zarr(*store_of(noise(seed), "v"), 0, folder / "v.zarr", small_chunks());
-    };
-    put_original(1);
-    const auto original = open_store(folder / "v.zarr");
-    Opened opened{folder / "v.zarr", {}, content_below_edits(*original, 0)};
-    const auto edits = edited(
-        empty_samples(*original, noise(1), 0), edit::Fill{{{3, 3, 3}, {9, 9, 9}}, 7},
-        [&](const SampleBox& box, std::span<std::byte> to) { original->read(0, box, to, {}); });
-    const auto save = [&] {
-        save_edits(*original, opened, 0, *edits.samples, folder / "e.zarr", {});
-    };
-    put_original(2);
-    const std::string message = message_of<io::OutputError>(save);
+    const EditedOriginal edits;
+    const fs::path out = edits.folder / "e.zarr";
+    const std::string content = content_below_edits(*edits.store, 0);
+    edits.put_original(2);
+    const std::string message = message_of<io::OutputError>([&] { edits.save(out, content); });
     EXPECT_TRUE(contains(message, "was replaced since it was opened")) << message;
-    EXPECT_FALSE(fs::exists(folder / "e.zarr"));
-    opened.is_rescue = true;
-    save();
-    EXPECT_THROW((void)open_store(folder / "e.zarr"), io::InputError);
-    put_original(1);
-    EXPECT_EQ(read_box(*open_store(folder / "e.zarr"), 0, {{5, 5, 5}, {5, 5, 5}})[0], std::byte{7});
+    EXPECT_FALSE(fs::exists(out));
+    edits.save(out, content, true);
+    EXPECT_THROW((void)open_store(out), io::InputError);
+    edits.put_original(1);
+    EXPECT_EQ(edits.sample_in(out), std::byte{7});
 }
 
 TEST(OwnFiles, a_pipe_or_a_link_at_the_name_of_a_chunk_neither_hangs_nor_leads_elsewhere) {

@@ -23,10 +23,6 @@ using support::message_of;
 using support::put_bytes;
 using support::ScratchFolder;
 
-std::string refusal(const std::string& address, const StoreOptions& options = {}) {
-    return message_of<io::InputError>([&] { (void)open_store(address, options); });
-}
-
 TEST(PlainFile, boxes_are_those_of_the_volume_read_whole_for_every_format_and_type) {
     const ScratchFolder folder;
     std::mt19937 random(1);

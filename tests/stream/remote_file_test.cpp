@@ -45,7 +45,7 @@ StoreOptions patient() {
 
 TEST(RemoteFile, hdf5_and_tiff_read_as_on_the_disk_although_answers_fail) {
     int files = 0;
-    for (const fs::path& folder : {hdf5_written(), tiff_written()}) {
+    for (const fs::path& folder : {written_by("hdf5"), written_by("tiff")}) {
         const VolumeServer server(
             {"--folder", folder.string(), "--failures", "0.02", "--truncated", "0.02"});
         for (const char* name :
@@ -68,21 +68,22 @@ TEST(RemoteFile, hdf5_and_tiff_read_as_on_the_disk_although_answers_fail) {
 TEST(RemoteFile, names_with_escapes_a_query_and_a_fragment_are_found) {
     const ScratchFolder folder;
     fs::create_directories(folder.path() / "a folder");
-    fs::copy_file(hdf5_written() / "image.ims", folder.path() / "a folder" / "an image 50%.ims");
+    fs::copy_file(written_by("hdf5") / "image.ims",
+                  folder.path() / "a folder" / "an image 50%.ims");
     const VolumeServer server({"--folder", folder.path().string()});
     const auto store =
         open_store(server.address("a%20folder/an%20image%2050%25.ims?version=1#top"));
-    expect_same_store(*open_store(hdf5_written() / "image.ims"), *store);
+    expect_same_store(*open_store(written_by("hdf5") / "image.ims"), *store);
 }
 
 /// A name without a query is no secret, and messages are no keys.
 TEST(RemoteFile, names_with_characters_of_addresses_are_found_and_lead_back) {
     const ScratchFolder folder;
     const std::pair<fs::path, const char*> names[] = {
-        {hdf5_written() / "image.ims", "what?.ims"},
-        {hdf5_written() / "image.ims", "50%25#1?.ims"},
-        {tiff_written() / "pyramid.tif", "what?now.tif"},
-        {tiff_written() / "pyramid.tif", "a@b.tif"}};
+        {written_by("hdf5") / "image.ims", "what?.ims"},
+        {written_by("hdf5") / "image.ims", "50%25#1?.ims"},
+        {written_by("tiff") / "pyramid.tif", "what?now.tif"},
+        {written_by("tiff") / "pyramid.tif", "a@b.tif"}};
     const VolumeServer server({"--folder", folder.path().string()});
     for (const auto& [from, name] : names) {
         SCOPED_TRACE(name);
@@ -100,7 +101,7 @@ TEST(RemoteFile, a_file_that_is_gone_has_no_missing_chunks) {
     const fs::path file = folder.path() / "image.ims";
     for (const std::string& address : {file.string(), server.address("image.ims")}) {
         SCOPED_TRACE(address);
-        fs::copy_file(hdf5_written() / "image.ims", file);
+        fs::copy_file(written_by("hdf5") / "image.ims", file);
         const auto store = open_store(address);
         const SampleBox box = whole_box(store->info().levels[0].geometry);
         EXPECT_FALSE(read_box(*store, 0, box).empty());
@@ -114,7 +115,7 @@ TEST(RemoteFile, a_file_that_is_gone_has_no_missing_chunks) {
 
 TEST(RemoteFile, a_disk_cache_keeps_its_parts_until_the_file_is_another) {
     const ScratchFolder folder;
-    fs::copy_file(hdf5_written() / "image.ims", folder.path() / "image.ims");
+    fs::copy_file(written_by("hdf5") / "image.ims", folder.path() / "image.ims");
     const VolumeServer server({"--folder", folder.path().string()});
     StoreOptions options;
     options.cache_folder = folder.path() / "cache";
@@ -129,7 +130,7 @@ TEST(RemoteFile, a_disk_cache_keeps_its_parts_until_the_file_is_another) {
     EXPECT_GT(second.cached, first.cached);
     EXPECT_LE(second.bytes, 100U) << "its size and first bytes";
     fs::remove(folder.path() / "image.ims");
-    fs::copy_file(hdf5_written() / "missing.ims", folder.path() / "image.ims");
+    fs::copy_file(written_by("hdf5") / "missing.ims", folder.path() / "image.ims");
     EXPECT_GT(read().bytes, 1000U);
 }
 
@@ -151,8 +152,8 @@ void replace(const fs::path& file) {
 
 TEST(RemoteFile, a_file_that_is_written_anew_while_it_is_read_is_an_error_here_and_there) {
     const ScratchFolder folder;
-    const std::pair<const char*, fs::path> files[] = {{"image.ims", hdf5_written()},
-                                                      {"pages.tif", tiff_written()}};
+    const std::pair<const char*, fs::path> files[] = {{"image.ims", written_by("hdf5")},
+                                                      {"pages.tif", written_by("tiff")}};
     const VolumeServer server({"--folder", folder.path().string()});
     for (const auto& [name, from] : files) {
         const fs::path file = folder.path() / name;
@@ -175,7 +176,7 @@ TEST(RemoteFile, a_file_that_is_written_anew_while_it_is_read_is_an_error_here_a
 
 TEST(RemoteFile, what_cannot_be_read_is_one_line) {
     const ScratchFolder folder;
-    const fs::path good = hdf5_written() / "image.ims";
+    const fs::path good = written_by("hdf5") / "image.ims";
     fs::copy_file(good, folder.path() / "cut.ims");
     fs::resize_file(folder.path() / "cut.ims", fs::file_size(good) / 2);
     support::put_bytes(folder.path() / "none.h5", "this is no HDF5");
@@ -193,8 +194,7 @@ TEST(RemoteFile, what_cannot_be_read_is_one_line) {
     for (const auto& pair : wrong) {
         const std::string& address = pair.first;
         const char* const what = pair.second;
-        const std::string message =
-            message_of<io::InputError>([&] { (void)open_store(address, {}); });
+        const std::string message = refusal(address);
         EXPECT_TRUE(message.starts_with(address)) << message;
         EXPECT_TRUE(contains(message, what)) << message;
         EXPECT_FALSE(contains(message, "\n")) << message;

@@ -107,6 +107,18 @@ inline Volume expected_volume(const Geometry& grid, const std::string& raw, io::
                   samples->size());
 }
 
+/// The message that opening a store fails with; a test failure if it does not fail.
+inline std::string refusal(const std::string& address, const StoreOptions& options = {}) {
+    return support::message_of<io::InputError>([&] { (void)open_store(address, options); });
+}
+
+/// That its message has these words.
+inline void expect_refusal(const std::string& words, const std::string& address,
+                           const StoreOptions& options = {}) {
+    const std::string message = refusal(address, options);
+    EXPECT_TRUE(support::contains(message, words)) << message;
+}
+
 /// Opens and reads all of a store; true if it did, false if it was refused in one line.
 inline bool read_or_refused(const std::filesystem::path& path) {
     try {

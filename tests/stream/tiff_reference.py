@@ -1,19 +1,17 @@
 #!/usr/bin/env python3
 """Independent writer of tiled TIFF for the tests: python3-tifffile, with OME-XML of its own making.
 
-  tiff_reference.py FOLDER    files of many kinds, each with its samples in NAME.raw
+  tiff_reference.py write FOLDER    files of many kinds, each with its samples in NAME.raw
 """
 
 import itertools
-import os
-import sys
 import zlib
 
 import numcodecs
 import numpy
 import tifffile
 
-from zarr_reference import expect, samples
+from zarr_reference import expect, run, samples
 
 TILE = (16, 32)
 SHAPE = (3, 45, 70)
@@ -167,12 +165,4 @@ def write_others(folder):
         tiff.write(coarser(stack[:2], 1), tile=TILE, subfiletype=1, photometric="minisblack", metadata=None)
 
 
-def main():
-    folder = sys.argv[1]
-    os.makedirs(folder, exist_ok=True)
-    for write in (write_kinds, write_ome, write_others):
-        write(folder)
-
-
-if __name__ == "__main__":
-    main()
+run((write_kinds, write_ome, write_others))

@@ -5,7 +5,6 @@
 #include "io/volume_support.hpp"
 #include "palpate/io/volume_file.hpp"
 #include "stream/formats/undo_codecs.hpp"
-#include "stream/store_support.hpp"
 #include "stream/written_files.hpp"
 
 namespace palpate::stream::test {
@@ -18,17 +17,8 @@ using support::contains;
 using support::message_of;
 using support::ScratchFolder;
 
-void expect_tiff_level(const Store& store, int level, const std::string& raw, Stored stored) {
-    const Geometry& grid = store.info().levels.at(static_cast<std::size_t>(level)).geometry;
-    expect_same_boxes(
-        store, expected_volume(grid, bytes_of(tiff_written() / (raw + ".raw")), stored), 6, level);
-}
-
-/// By the end of a file's name: "...-i2.tif".
-Stored samples_in_name(const std::string& name) {
-    const std::string type = name.substr(name.rfind('-') + 1, 2);
-    const std::string kind = type[0] == 'u' ? "uint" : type[0] == 'i' ? "int" : "float";
-    return *io::stored_named(kind + std::to_string(8 * (type[1] - '0')));
+const fs::path& tiff_written() {
+    return written_by("tiff");
 }
 
 TEST(Tiff, every_type_byte_order_and_compression_reads_as_written_and_as_libtiff_reads_it) {
@@ -42,7 +32,7 @@ TEST(Tiff, every_type_byte_order_and_compression_reads_as_written_and_as_libtiff
         const auto store = open_store(entry.path());
         EXPECT_EQ(store->info().levels.at(0).geometry.size, Index3(70, 45, 3));
         EXPECT_EQ(store->info().levels[0].chunk, Index3(32, 16, 1));
-        expect_tiff_level(*store, 0, name, samples_in_name(name));
+        expect_level(*store, 0, tiff_written() / name, stored_in(name));
         const io::VolumeFile whole = io::read_volume(entry.path());
         EXPECT_EQ(read_box(*store, 0, whole_box(whole.volume.geometry())),
                   box_of(whole.volume, whole_box(whole.volume.geometry())));
@@ -56,10 +46,7 @@ TEST(Tiff, levels_channels_and_times_of_an_ome_pyramid_are_those_of_its_xml) {
         ASSERT_TRUE(is_chunked(tiff_written() / name));
         for (int time = 0; time < 3; ++time) {
             for (int channel = 0; channel < 2; ++channel) {
-                StoreOptions options;
-                options.time = time;
-                options.channel = channel;
-                const auto store = open_store(tiff_written() / name, options);
+                const auto store = open_store(tiff_written() / name, choice_of(channel, time));
                 const StoreInfo& info = store->info();
                 EXPECT_EQ(info.format, "OME-TIFF");
                 EXPECT_EQ(info.times, 3);
@@ -75,31 +62,26 @@ TEST(Tiff, levels_channels_and_times_of_an_ome_pyramid_are_those_of_its_xml) {
                         grid.spacing.isApprox(finest.cwiseProduct(Vec3(factor, factor, 1))));
                     EXPECT_TRUE(grid.origin.isApprox(
                         finest.cwiseProduct(Vec3(factor - 1, factor - 1, 0)) / 2));
-                    expect_tiff_level(*store, level,
-                                      name + "-" + std::to_string(level) + "-" +
-                                          std::to_string(time) + "-" + std::to_string(channel),
-                                      Stored::uint16);
+                    expect_level(*store, level,
+                                 tiff_written() / numbered(name, {level, time, channel}),
+                                 Stored::uint16);
                 }
             }
         }
     }
-    StoreOptions beyond;
-    beyond.channel = 2;
-    EXPECT_TRUE(contains(message_of<io::InputError>([&] {
-                             (void)open_store(tiff_written() / "pyramid-TCZYX.ome.tif", beyond);
-                         }),
-                         "no channel 2: it has 2"));
+    expect_refusal("no channel 2: it has 2", tiff_written() / "pyramid-TCZYX.ome.tif",
+                   choice_of(2, 0));
 }
 
 TEST(Tiff, coarser_levels_are_sub_directories_or_reduced_pages) {
     const auto pages = open_store(tiff_written() / "pages.tif");
     ASSERT_EQ(pages->info().levels.size(), 3U);
     for (int level = 0; level < 3; ++level) {
-        expect_tiff_level(*pages, level, "pages-" + std::to_string(level), Stored::uint8);
+        expect_level(*pages, level, tiff_written() / numbered("pages", {level}), Stored::uint8);
     }
     const auto pyramid = open_store(tiff_written() / "pyramid.tif");
     EXPECT_EQ(pyramid->info().levels.size(), 2U);
-    expect_tiff_level(*pyramid, 0, "pyramid", Stored::uint16);
+    expect_level(*pyramid, 0, tiff_written() / "pyramid", Stored::uint16);
     EXPECT_TRUE(contains(pyramid->info().notes.at(0), "does not tell its spacing"));
 }
 
@@ -113,7 +95,7 @@ TEST(Tiff, what_is_not_read_is_refused_with_what_is_wrong) {
         {"files.ome.tif", "planes in 'a.tif', others in 'b.tif'"}};
     for (const auto& [name, what] : wrong) {
         const fs::path file = tiff_written() / ("refused-" + std::string(name));
-        const std::string message = message_of<io::InputError>([&] { (void)open_store(file); });
+        const std::string message = refusal(file);
         EXPECT_TRUE(contains(message, what)) << message;
         EXPECT_TRUE(io::test::one_line_about(message, file)) << message;
     }

@@ -225,17 +225,16 @@ def write_ome(folder):
     group.attrs["omero"] = {"channels": [{"label": "nuclei"}, {"label": "membrane"}, {}]}
 
 
-def main():
-    if sys.argv[1] == "write":
-        folder = sys.argv[2]
-        write_v2(folder)
-        write_missing(folder)
-        write_v3(folder)
-        write_ome(folder)
-    elif sys.argv[1] == "dump":
-        array = zarr.open(sys.argv[2], mode="r")[sys.argv[3]][...]
-        sys.stdout.buffer.write(numpy.ascontiguousarray(array).tobytes())
+def run(writers, dump=None):
+    """The command line of this script and its siblings."""
+    command, *arguments = sys.argv[1:]
+    if command == "write":
+        os.makedirs(arguments[0], exist_ok=True)
+        for write in writers:
+            write(arguments[0])
+    elif command == "dump":
+        sys.stdout.buffer.write(numpy.ascontiguousarray(dump(*arguments)).tobytes())
 
 
 if __name__ == "__main__":
-    main()
+    run((write_v2, write_missing, write_v3, write_ome), lambda store, array: zarr.open(store, mode="r")[array][...])
