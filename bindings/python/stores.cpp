@@ -22,17 +22,8 @@ struct OpenStore {
     stream::StoreOptions options;
 
     const stream::StoreInfo& info() const { return store->info(); }
-    const stream::Level& level(int number) const {
-        if (number < 0 || number >= static_cast<int>(info().levels.size())) {
-            throw std::invalid_argument(io::without_secrets(info().address) + ": has " +
-                                        std::to_string(info().levels.size()) +
-                                        " levels, numbered from 0; there is no level " +
-                                        std::to_string(number));
-        }
-        return info().levels[static_cast<std::size_t>(number)];
-    }
     Volume read(const Index3& low, const Index3& high, int number) const {
-        Geometry grid = level(number).geometry;
+        Geometry grid = stream::level_of(*store, number).geometry;
         const SampleBox box{low, high - Index3::Ones()};  // as NumPy's slices
         if ((low.array() < 0).any() || (high.array() > grid.size.array()).any() || box.empty()) {
             throw std::invalid_argument(
@@ -155,7 +146,7 @@ void bind_open_store(py::module_& module) {
 
 /// A store as what a Run feels, which brings its samples into memory as they are needed.
 run::LoadedVolume loaded_from(const OpenStore& store, int level, std::uint64_t memory_bytes) {
-    store.level(level);
+    (void)stream::level_of(*store.store, level);  // throws where there is none
     run::StoreSource from;
     from.address = store.address;
     from.options = store.options;
