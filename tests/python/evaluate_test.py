@@ -476,18 +476,15 @@ def test_nothing_half_written_is_left_when_interrupted(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_an_interrupt_while_the_folder_is_made_leaves_nothing(tmp_path, monkeypatch):
-    make = pathlib.Path.mkdir
-
-    def interrupted(path, *how, **options):
-        make(path, *how, **options)
-        raise KeyboardInterrupt(signal.SIGINT)
-
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(pathlib.Path, "mkdir", interrupted)
-    with pytest.raises(KeyboardInterrupt):
-        program.evaluate(program.arguments(["walk-through", "--quick", "-o", "found"]), [])
-    assert list(tmp_path.iterdir()) == []
+def test_what_a_killed_run_left_goes_with_the_next(tmp_path):
+    running = subprocess.Popen([os.environ["PALPATE"], "evaluate", "drift", "--output", "found"], cwd=tmp_path)
+    while not list(tmp_path.glob("found/.palpate-*/*")) and running.poll() is None:
+        time.sleep(0.01)
+    running.kill()
+    running.wait()
+    assert list(tmp_path.glob("found/.palpate-*"))
+    evaluate(tmp_path, "walk-through", "--quick", "-q", "-o", "found")
+    assert not list(tmp_path.glob("found/.*"))
 
 
 def test_real_volumes_are_known_by_their_bytes(tmp_path):
