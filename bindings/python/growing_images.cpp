@@ -86,7 +86,7 @@ void make_coarser(const stream::GrowingImage& image, int level, const Index3& lo
 
 /// Python does not say when an object is deleted, so a folder is released explicitly.
 template <class Folder>
-struct Held {
+struct OpenFolder {
     std::unique_ptr<Folder> folder;
 
     Folder& open() const {
@@ -95,8 +95,8 @@ struct Held {
     }
     void close() { folder.reset(); }
 };
-using Growing = Held<io::GrowingFolder>;
-using Results = Held<io::ResultFolder>;
+using Growing = OpenFolder<io::GrowingFolder>;
+using Results = OpenFolder<io::ResultFolder>;
 
 Growing resumable(const fs::path& out, const std::string& job) {
     return {std::unique_ptr<io::GrowingFolder>(
