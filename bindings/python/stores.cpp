@@ -130,6 +130,7 @@ void bind_open_store(py::module_& module) {
     module.def(
         "_content_of",
         [](const OpenStore& s, int level) {
+            (void)stream::level_of(*s.store, level);  // throws where there is none
             return until_ctrl_c([&](const std::stop_token& stop) {
                 return stream::content_of(*s.store, level, stop);
             });
