@@ -83,6 +83,12 @@ void bind_store(py::module_& module) {
         });
 }
 
+std::string content_of(const OpenStore& from, int level) {
+    (void)stream::level_of(*from.store, level);  // throws where there is none
+    return until_ctrl_c(
+        [&](const std::stop_token& stop) { return stream::content_of(*from.store, level, stop); });
+}
+
 void bind_open_store(py::module_& module) {
     module.def(
         "open_store",
@@ -127,15 +133,7 @@ void bind_open_store(py::module_& module) {
         "forbidden_is_missing: chunks for which the server answers 403 are not stored, as with\n"
         "S3. Reads headers only. Raises InputError.");
     // For palpate.distributed.
-    module.def(
-        "_content_of",
-        [](const OpenStore& s, int level) {
-            (void)stream::level_of(*s.store, level);  // throws where there is none
-            return until_ctrl_c([&](const std::stop_token& stop) {
-                return stream::content_of(*s.store, level, stop);
-            });
-        },
-        Unlocked());
+    module.def("_content_of", &content_of, Unlocked());
     module.def(
         "_files_at",
         [](const std::string& address) {
