@@ -31,6 +31,15 @@ std::string one_of(const std::vector<std::string>& names);
 template <class S, class T>
 concept Is = std::same_as<std::remove_const_t<S>, T>;
 
+/// In members(v, s): visits these members of s, each under its own name.
+#define PALPATE_MEMBERS(...) NLOHMANN_JSON_EXPAND(NLOHMANN_JSON_PASTE(PALPATE_MEMBER, __VA_ARGS__))
+#define PALPATE_MEMBER(name) v(#name, s.name);
+/// The list of members of a struct all of which have their own names.
+#define PALPATE_JSON(Struct, ...)                      \
+    static void members(auto& v, Is<Struct> auto& s) { \
+        PALPATE_MEMBERS(__VA_ARGS__)                   \
+    }
+
 template <class T>
 requires(std::same_as<T, bool> || std::same_as<T, int> || std::same_as<T, std::uint32_t> ||
          std::same_as<T, std::string>) Json to_value(const T& value) {

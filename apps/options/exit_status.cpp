@@ -1,10 +1,10 @@
 // Exceptions to exit status.
 #include "apps/options/exit_status.hpp"
 
-#include <algorithm>
 #include <cstdio>
 #include <new>
 #include <stdexcept>
+#include <utility>
 
 #include "palpate/devices/error.hpp"
 #include "palpate/io/error.hpp"
@@ -31,11 +31,7 @@ std::string list_of(const std::vector<io::SeriesInfo>& series) {
 }  // namespace
 
 std::string one_line(std::string text) {
-    constexpr std::size_t longest = 6000, end = 500;  // a path has up to 4096 bytes
-    const auto is_control = [](unsigned char c) { return c < ' ' || c == 0x7f; };
-    std::ranges::replace_if(text, is_control, ' ');
-    if (text.size() > longest) text.replace(longest - end, text.size() - longest, "...");
-    return text;
+    return io::one_line(std::move(text), 5500, 500);  // a path has up to 4096 bytes
 }
 
 Failure failure_of(const std::exception& exception) {

@@ -150,8 +150,7 @@ void to_file(const ConvertWords& words, const Taken& taken) {
     options.compress = words.compress;
     options.progress = [&](double fraction) { bar.at(fraction); };
     stream::write_plain(*taken.store, taken.level, words.output, options);
-    const Index3& size =
-        taken.store->info().levels[static_cast<std::size_t>(taken.level)].geometry.size;
+    const Index3& size = stream::level_of(*taken.store, taken.level).geometry.size;
     if (words.json) {
         print_json({{"format", std::string(io::written_extension_of(words.output))}});
     } else if (!words.source.quiet) {
@@ -173,11 +172,7 @@ void convert(const CLI::App& command, const ConvertWords& words) {
         if (!why.empty()) warn_of_no_effect(command, {"--compress"}, why);
     }
     const Taken taken = opened(words);
-    const auto levels = static_cast<int>(taken.store->info().levels.size());
-    if (taken.level >= levels) {
-        throw std::invalid_argument(fmt::format("--level {}: {} has {} levels, numbered from 0",
-                                                taken.level, words.source.name(), levels));
-    }
+    (void)stream::level_of(*taken.store, taken.level);  // throws where there is none
     note_losses(command, words, taken);
     zarr ? to_zarr(words, taken) : to_file(words, taken);
     stop_if_interrupted();

@@ -16,7 +16,7 @@
 #include "apps/palpate/outputs.hpp"
 #include "apps/palpate/picture.hpp"
 #include "apps/palpate/progress.hpp"
-#include "apps/palpate/result_folder.hpp"
+#include "io/system/result_folder.hpp"
 #include "palpate/io/error.hpp"
 #include "palpate/io/output.hpp"
 
@@ -180,7 +180,7 @@ pictures::PictureScene scene_of(const Demo& demo, const DemoOptions& options) {
 void run_demo(Demo& demo, const DemoOptions& options, const DemoPicture& picture,
               const std::function<void(const fs::path& folder)>& more) {
     const bool quiet = options.source.quiet;
-    ResultFolder results(options.output, options.all_results());
+    io::ResultFolder results(options.output, options.all_results());
     const fs::path& folder = results.part();
     feel(demo, options, folder);
     std::string images;

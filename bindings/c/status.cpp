@@ -21,18 +21,12 @@ thread_local std::array<char, 1024> last_error{};
 palpate_status keep(palpate_status status, const char* text) noexcept {
     std::string shown;
     try {
-        shown = io::without_secrets(text);
-        const auto is_control = [](unsigned char c) { return c < ' ' || c == 0x7f; };
-        std::ranges::replace_if(shown, is_control, ' ');
+        shown = io::one_line(io::without_secrets(text));  // at most 900 bytes
         text = shown.c_str();
     } catch (const std::bad_alloc&) {
         text = "not enough memory for the message";
     }
-    std::size_t length = std::min(std::strlen(text), last_error.size() - 1);
-    const auto continues = [&] {
-        return (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80;
-    };
-    while (length > 0 && continues()) --length;  // never a part of a character of UTF-8
+    const std::size_t length = std::min(std::strlen(text), last_error.size() - 1);
     std::memcpy(last_error.data(), text, length);
     last_error[length] = '\0';
     return status;

@@ -1,9 +1,11 @@
-// Images that grow chunk by chunk and the folders that they grow in, for palpate.distributed.
-// Reading and writing runs without the GIL.
+// Images that grow chunk by chunk, folders of unfinished results, and whole files, for the commands
+// that are written in Python. Reading and writing runs without the GIL.
 #include "palpate/stream/growing_image.hpp"
 
 #include "bindings/python/bindings.hpp"
 #include "io/system/growing_folder.hpp"
+#include "io/system/result_folder.hpp"
+#include "palpate/io/output.hpp"
 
 namespace palpate::python {
 namespace {
@@ -83,18 +85,46 @@ void make_coarser(const stream::GrowingImage& image, int level, const Index3& lo
 }
 
 /// Python does not say when an object is deleted, so a folder is released explicitly.
-struct Folder {
-    std::unique_ptr<io::GrowingFolder> grown;
+template <class Folder>
+struct OpenFolder {
+    std::unique_ptr<Folder> folder;
 
-    io::GrowingFolder& open() const {
-        if (!grown) throw std::invalid_argument("this folder is closed");
-        return *grown;
+    Folder& open() const {
+        if (!folder) throw std::invalid_argument("this folder is closed");
+        return *folder;
     }
+    void close() { folder.reset(); }
 };
+using Growing = OpenFolder<io::GrowingFolder>;
+using Results = OpenFolder<io::ResultFolder>;
 
-Folder resumable(const fs::path& out, const std::string& job) {
+Growing resumable(const fs::path& out, const std::string& job) {
     return {std::unique_ptr<io::GrowingFolder>(
         new io::GrowingFolder(io::GrowingFolder::resumable(out, job)))};
+}
+
+void bind_folders(py::module_& module) {
+    module.def("_check_resumable", &io::GrowingFolder::check_resumable, py::arg("out"),
+               py::arg("job"));
+    py::class_<Growing>(module, "_GrowingFolder")
+        .def(py::init(&resumable), py::arg("out"), py::arg("job"))
+        .def_property_readonly("note", [](const Growing& folder) { return folder.open().note(); })
+        .def(
+            "put_in_place", [](const Growing& folder) { folder.open().put_in_place(); }, Unlocked())
+        .def("close", &Growing::close);
+    py::class_<Results>(module, "_ResultFolder")
+        .def(py::init([](const fs::path& folder) {
+                 return Results{std::make_unique<io::ResultFolder>(folder)};
+             }),
+             py::arg("folder"))
+        .def_property_readonly("part", [](const Results& results) { return results.open().part(); })
+        .def(
+            "complete", [](const Results& results) { results.open().complete(); }, Unlocked())
+        .def("close", &Results::close);
+    module.def(
+        "_write_file",
+        [](const fs::path& path, const std::string& bytes) { io::write_file(path, bytes); },
+        py::arg("path"), py::arg("bytes"), Unlocked());
 }
 
 }  // namespace
@@ -123,14 +153,7 @@ void bind_growing_images(py::module_& module) {
         .def("write", &write_block, py::arg("low"), py::arg("block"), Unlocked())
         .def("make_coarser", &make_coarser, py::arg("level"), py::arg("low"), py::arg("high"),
              Unlocked());
-    module.def("_check_resumable", &io::GrowingFolder::check_resumable, py::arg("out"),
-               py::arg("job"));
-    py::class_<Folder>(module, "_GrowingFolder")
-        .def(py::init(&resumable), py::arg("out"), py::arg("job"))
-        .def_property_readonly("note", [](const Folder& folder) { return folder.open().note(); })
-        .def(
-            "put_in_place", [](const Folder& folder) { folder.open().put_in_place(); }, Unlocked())
-        .def("close", [](Folder& folder) { folder.grown.reset(); });
+    bind_folders(module);
 }
 
 }  // namespace palpate::python

@@ -22,17 +22,8 @@ struct OpenStore {
     stream::StoreOptions options;
 
     const stream::StoreInfo& info() const { return store->info(); }
-    const stream::Level& level(int number) const {
-        if (number < 0 || number >= static_cast<int>(info().levels.size())) {
-            throw std::invalid_argument(io::without_secrets(info().address) + ": has " +
-                                        std::to_string(info().levels.size()) +
-                                        " levels, numbered from 0; there is no level " +
-                                        std::to_string(number));
-        }
-        return info().levels[static_cast<std::size_t>(number)];
-    }
     Volume read(const Index3& low, const Index3& high, int number) const {
-        Geometry grid = level(number).geometry;
+        Geometry grid = stream::level_of(*store, number).geometry;
         const SampleBox box{low, high - Index3::Ones()};  // as NumPy's slices
         if ((low.array() < 0).any() || (high.array() > grid.size.array()).any() || box.empty()) {
             throw std::invalid_argument(
@@ -92,6 +83,12 @@ void bind_store(py::module_& module) {
         });
 }
 
+std::string content_of(const OpenStore& from, int level) {
+    (void)stream::level_of(*from.store, level);  // throws where there is none
+    return until_ctrl_c(
+        [&](const std::stop_token& stop) { return stream::content_of(*from.store, level, stop); });
+}
+
 void bind_open_store(py::module_& module) {
     module.def(
         "open_store",
@@ -136,14 +133,7 @@ void bind_open_store(py::module_& module) {
         "forbidden_is_missing: chunks for which the server answers 403 are not stored, as with\n"
         "S3. Reads headers only. Raises InputError.");
     // For palpate.distributed.
-    module.def(
-        "_content_of",
-        [](const OpenStore& s, int level) {
-            return until_ctrl_c([&](const std::stop_token& stop) {
-                return stream::content_of(*s.store, level, stop);
-            });
-        },
-        Unlocked());
+    module.def("_content_of", &content_of, Unlocked());
     module.def(
         "_files_at",
         [](const std::string& address) {
@@ -155,7 +145,7 @@ void bind_open_store(py::module_& module) {
 
 /// A store as what a Run feels, which brings its samples into memory as they are needed.
 run::LoadedVolume loaded_from(const OpenStore& store, int level, std::uint64_t memory_bytes) {
-    store.level(level);
+    (void)stream::level_of(*store.store, level);  // throws where there is none
     run::StoreSource from;
     from.address = store.address;
     from.options = store.options;

@@ -23,19 +23,15 @@ static void whole(auto& v, const std::string& name, T& value, double low, double
     }
 }
 
-static void members(auto& v, Is<HandPast> auto& s) {
-    v("begun", s.begun);
-    v("seen", s.seen);
-    v("holding", s.holding);
-    v("last_tick", s.last_tick);
-    v("seen_at", s.seen_at);
-    v("hand", s.hand);
-    v("frozen_hand", s.frozen_hand);
-    v("tool", s.tool);
-    v("frozen_tool", s.frozen_tool);
-    v("held_hip", s.held_hip);
-    v("held_tool", s.held_tool);
+/// The first `count` values of an array, each under a name that ends with its number.
+static void numbered(auto& v, const std::string& name, auto& values, int count) {
+    for (int i = 0; i < count; ++i) {
+        v(name + std::to_string(i + 1), values[static_cast<std::size_t>(i)]);
+    }
 }
+
+PALPATE_JSON(HandPast, begun, seen, holding, last_tick, seen_at, hand, frozen_hand, tool,
+             frozen_tool, held_hip, held_tool)
 
 static void members(auto& v, Is<Tetrahedron> auto& s) {
     for (int i = 0; i < 3; ++i) {
@@ -51,46 +47,19 @@ static void members(auto& v, Is<Proxy> auto& s) {
     v("tetrahedron", s.scp.tetrahedron);
     v("folded", s.scp.folded);
     v("scp", s.scp_physical);
-    v("isovalue", s.isovalue);
-    v("behind", s.behind);
-    v("turned", s.turned);
+    PALPATE_MEMBERS(isovalue, behind, turned)
     whole(v, "mode", s.mode, 0, 1);
     whole(v, "interpolation", s.interpolation, 0, 1);
-    v("placed", s.placed);
-    v("sliding", s.sliding);
-    v("recovery_reach", s.recovery_reach);
+    PALPATE_MEMBERS(placed, sliding, recovery_reach)
     v("ahead", s.normal_before);
 }
 
-static void members(auto& v, Is<MotorHeat> auto& s) {
-    v("warmth", s.warmth);
-    v("time", s.time);
-    v("force", s.force);
-}
+PALPATE_JSON(MotorHeat, warmth, time, force)
 
-static void members(auto& v, Is<ForceState> auto& s) {
-    v("started", s.started);
-    v("waiting", s.waiting);
-    v("changed", s.changed);
-    v("time", s.time);
-    v("ramp_begin", s.ramp_begin);
-    v("hand", s.hand);
-    v("velocity", s.velocity);
-    v("force", s.force);
-    v("spring", s.spring);
-    v("turns", s.turns);
-    v("orientation", s.orientation);
-    v("angular_velocity", s.angular_velocity);
-    v("torque", s.torque);
-    v("turning_spring", s.turning_spring);
-    v("motors", s.motors);
-}
+PALPATE_JSON(ForceState, started, waiting, changed, time, ramp_begin, hand, velocity, force, spring,
+             turns, orientation, angular_velocity, torque, turning_spring, motors)
 
-static void members(auto& v, Is<ContactSpring> auto& s) {
-    v("touching", s.touching);
-    v("stiffness", s.stiffness);
-    v("rest", s.rest);
-}
+PALPATE_JSON(ContactSpring, touching, stiffness, rest)
 
 static void members(auto& v, Is<Crossing> auto& s) {
     v("at", s.at);
@@ -99,56 +68,30 @@ static void members(auto& v, Is<Crossing> auto& s) {
 }
 
 static void members(auto& v, Is<NeedleState> auto& s) {
-    v("inserted", s.inserted);
-    v("entry", s.entry);
-    v("axis", s.axis);
-    v("hand", s.hand);
-    v("anchor", s.anchor);
-    v("aside", s.aside);
-    v("slipping", s.slipping);
+    PALPATE_MEMBERS(inserted, entry, axis, hand, anchor, aside, slipping)
     whole(v, "crossing_count", s.crossing_count, 0, NeedleState::most_crossings);
-    for (int i = 0; i < s.crossing_count; ++i) {
-        v("crossing_" + std::to_string(i + 1), s.crossings[static_cast<std::size_t>(i)]);
-    }
+    numbered(v, "crossing_", s.crossings, s.crossing_count);
 }
 
 static void members(auto& v, Is<LayerState> auto& s) {
     whole(v, "layer_count", s.layer_count, -1, Layers::most_layers);
     whole(v, "level_count", s.level_count, -1, Layers::most_layers);
-    v("open", s.open);
-    v("label_opening", s.label_opening);
+    PALPATE_MEMBERS(open, label_opening)
     whole(v, "outer", s.outer, 0, Layers::most_layers);
     whole(v, "inner", s.inner, 0, Layers::most_layers);
-    for (int i = 0; i < s.inner; ++i) {
-        v("opening_" + std::to_string(i + 1), s.opening[static_cast<std::size_t>(i)]);
-    }
+    numbered(v, "opening_", s.opening, s.inner);
     whole(v, "touched", s.touched, -1, Layers::most_layers);
-    v("spring", s.spring);
-    v("needle", s.needle);
-    v("moved", s.moved);
-    v("time", s.time);
-    v("hip", s.hip);
+    PALPATE_MEMBERS(spring, needle, moved, time, hip)
 }
 
 static void members(auto& v, Is<ToolContact> auto& s) {
     whole(v, "point", s.point, 0, static_cast<double>(most_tool_points));
-    v("place", s.place);
-    v("normal", s.normal);
-    v("pressure", s.pressure);
+    PALPATE_MEMBERS(place, normal, pressure)
 }
 
 static void members(auto& v, Is<SessionPoint> auto& s) {
-    v("moment", s.moment);
-    v("speed", s.speed);
-    v("frozen", s.frozen);
-    v("clutched", s.clutched);
-    v("starts_inside", s.starts_inside);
-    v("past", s.past);
-    v("proxy", s.proxy);
-    v("isovalue_without_layers", s.isovalue_without_layers);
-    v("drawn_to", s.drawn_to);
-    v("force", s.force);
-    v("layers", s.layers);
+    PALPATE_MEMBERS(moment, speed, frozen, clutched, starts_inside, past, proxy,
+                    isovalue_without_layers, drawn_to, force, layers)
     auto& tool = s.tool;
     v("tool", tool.pose.position);
     v("tool_orientation", tool.pose.orientation);
@@ -165,8 +108,6 @@ static void members(auto& v, Is<SessionPoint> auto& s) {
     }
 }
 
-static void members(auto& v, Is<command::Resume> auto& s) {
-    v("point", s.point);
-}
+PALPATE_JSON(command::Resume, point)
 
 }  // namespace palpate::io

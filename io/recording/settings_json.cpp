@@ -183,59 +183,31 @@ void from_value(const Json& json, const std::string& name, Tool& tool) {
 // The lists of members. Not in an unnamed namespace, where JsonWriter would not find them.
 
 static void members(auto& v, Is<Penetrability> auto& s) {
-    v("on", s.on);
-    v("threshold", s.threshold);
-    v("range_count", s.range_count);
+    PALPATE_MEMBERS(on, threshold, range_count)
     if (s.range_count < 0 || s.range_count > Penetrability::most_ranges) {
         wrong_member("range_count", "0 to 16");
     }
-    for (int i = 0; i < s.range_count; ++i) {
-        v("range_" + std::to_string(i + 1), s.ranges[static_cast<std::size_t>(i)]);
-    }
+    numbered(v, "range_", s.ranges, s.range_count);
 }
 
 static void members(auto& v, Is<RendererSettings> auto& s) {
     v("friction", s.proxy.friction);
     v("step_budget", s.proxy.step_budget);
-    v("penetrability", s.penetrability);
-    v("layers", s.layers);
-    v("tool", s.tool);
-    v("force", s.force);
-    v("device", s.device);
-    v("transform", s.transform);
-    v("forces_on", s.forces_on);
+    PALPATE_MEMBERS(penetrability, layers, tool, force, device, transform, forces_on)
 }
 
 static void members(auto& v, Is<command::Isovalue> auto& s) {
     v("value", s.isovalue);
 }
-static void members(auto& v, Is<command::Freeze> auto& s) {
-    v("on", s.on);
-}
-static void members(auto& v, Is<command::Clutch> auto& s) {
-    v("on", s.on);
-}
-static void members(auto& v, Is<command::Forces> auto& s) {
-    v("on", s.on);
-}
-static void members(auto& v, Is<command::Scale> auto& s) {
-    v("scale", s.scale);
-}
-
-static void members(auto& v, Is<command::UseLayers> auto& s) {
-    v("layers", s.layers);
-    v("same_surfaces", s.same_surfaces);
-}
-static void members(auto& v, Is<command::UseTool> auto& s) {
-    v("tool", s.tool);
-}
+PALPATE_JSON(command::Freeze, on)
+PALPATE_JSON(command::Clutch, on)
+PALPATE_JSON(command::Forces, on)
+PALPATE_JSON(command::Scale, scale)
+PALPATE_JSON(command::UseLayers, layers, same_surfaces)
+PALPATE_JSON(command::UseTool, tool)
+PALPATE_JSON(command::Moment, time)
+PALPATE_JSON(command::Speed, speed)
 static void members(auto&, Is<command::Lift> auto&) {}
-static void members(auto& v, Is<command::Moment> auto& s) {
-    v("time", s.time);
-}
-static void members(auto& v, Is<command::Speed> auto& s) {
-    v("speed", s.speed);
-}
 
 namespace {
 

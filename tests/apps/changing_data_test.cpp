@@ -24,13 +24,10 @@ TEST(Touch, recordings_of_edits_and_sequences_replay_bit_for_bit) {
     put_bytes(folder / "c.txt",
               "0.2 brush carve 4 50\n0.8 brush off\n0.9 undo\n1.0 redo\n"
               "1.1 carve 0,0,0:3,3,3 5\n1.2 fill 1,1,1:4,4,4 90%\n");
-    const Outcome done =
-        palpate(folder, "touch " + ball +
-                            " --unpaced --device simulated:hand=press --seconds 2.5 "
-                            "--commands c.txt --record r.csv --save out.nrrd");
-    ASSERT_EQ(done.status, 0) << done.err;
-    const Outcome valid = palpate(folder, "replay r.csv --validate");
-    EXPECT_EQ(valid.status, 0) << valid.err;
+    succeeds(folder, "touch " + ball +
+                         " --unpaced --device simulated:hand=press --seconds 2.5 "
+                         "--commands c.txt --record r.csv --save out.nrrd");
+    succeeds(folder, "replay r.csv --validate");
     const Volume saved = io::read_volume(folder / "out.nrrd").volume;
     EXPECT_EQ(saved.geometry().size, Index3(32, 32, 32));
     EXPECT_EQ(saved.sample({16, 16, 16}), 0);
@@ -56,13 +53,10 @@ TEST(Touch, recordings_of_edits_and_sequences_replay_bit_for_bit) {
     EXPECT_TRUE(std::regex_match(edits, std::regex("s+--sf"))) << edits;
     EXPECT_EQ(felt, made);
 
-    const Outcome beats = palpate(
-        folder,
-        "touch synthetic:beating:24x24x24 --unpaced --device simulated:hand=press --seconds 1 "
-        "--playback 3 --record b.csv");
-    ASSERT_EQ(beats.status, 0) << beats.err;
-    const Outcome again = palpate(folder, "replay b.csv --validate");
-    EXPECT_EQ(again.status, 0) << again.err;
+    succeeds(folder,
+             "touch synthetic:beating:24x24x24 --unpaced --device simulated:hand=press --seconds 1 "
+             "--playback 3 --record b.csv");
+    succeeds(folder, "replay b.csv --validate");
 }
 
 TEST(ChangingData, edits_are_saved_although_the_session_fails) {
@@ -71,13 +65,9 @@ TEST(ChangingData, edits_are_saved_although_the_session_fails) {
     std::filesystem::create_symlink("/dev/full", folder / "full.nrrd");
     put_bytes(folder / "c.txt", "0.1 fill 1,1,1:4,4,4 90%\n0.5 save full.nrrd\n");
     const Outcome done =
-        Running({"-c",
-                 "exec \"$0\" touch -q " + ball +
-                     " --unpaced --device simulated:hand=press --seconds 2 --commands c.txt "
-                     "--save out.nrrd 2>/dev/full",
-                 std::string(PALPATE_PROGRAM)},
-                folder.path(), Stdout::captured, "/bin/sh")
-            .finish();
+        by_bash(folder, "exec \"$0\" touch -q " + ball +
+                            " --unpaced --device simulated:hand=press --seconds 2 --commands c.txt "
+                            "--save out.nrrd 2>/dev/full");
     EXPECT_NE(done.status, 0);
     EXPECT_GT(io::read_volume(folder / "out.nrrd").volume.sample({2, 2, 2}), 200);
 }
@@ -91,16 +81,14 @@ TEST(Touch, a_saved_raw_or_tiff_file_opens_with_the_options_that_it_names) {
     io::write_volume(Volume(geometry, std::move(samples)), folder / "a.tif");
     put_bytes(folder / "c.txt", "0.1 fill 1,1,1:4,4,4 9\n0.2 save b.tif\n0.4 quit\n");
     const Outcome done =
-        palpate(folder,
-                "touch a.tif --unpaced --isovalue 300 --device simulated:hand=hold "
-                "--commands c.txt --save b.raw");
-    ASSERT_EQ(done.status, 0) << done.err;
+        succeeds(folder,
+                 "touch a.tif --unpaced --isovalue 300 --device simulated:hand=hold "
+                 "--commands c.txt --save b.raw");
     EXPECT_TRUE(
         contains(done.out, "saved b.raw (open it with dims 8x8x8, type uint16, spacing 0.5,0.5,2)"))
         << done.out;
     const Outcome raw =
-        palpate(folder, "info b.raw --dims 8x8x8 --type uint16 --spacing 0.5,0.5,2");
-    EXPECT_EQ(raw.status, 0) << raw.err;
+        succeeds(folder, "info b.raw --dims 8x8x8 --type uint16 --spacing 0.5,0.5,2");
     const Volume tiff = io::read_volume(folder / "b.tif").volume;
     EXPECT_EQ(tiff.sample({2, 2, 2}), 9);
     EXPECT_EQ(tiff.sample({7, 7, 7}), 611);
@@ -117,11 +105,9 @@ TEST(Touch, plays_a_numbered_series_and_opens_one_frame_of_it) {
                            std::vector<std::uint8_t>(1728, std::uint8_t(20 * number)));
         io::write_volume(frame, folder / ("f_00" + std::to_string(number) + ".nrrd"));
     }
-    const Outcome done =
-        palpate(folder, Words{"touch", "f_%03d.nrrd", "--unpaced", "--isovalue", "200",
-                              "--frame-interval", "0.1", "--device", "simulated:hand=hold",
-                              "--seconds", "2", "--once", "--record", "r.csv"});
-    ASSERT_EQ(done.status, 0) << done.err;
+    succeeds(folder, Words{"touch", "f_%03d.nrrd", "--unpaced", "--isovalue", "200",
+                           "--frame-interval", "0.1", "--device", "simulated:hand=hold",
+                           "--seconds", "2", "--once", "--record", "r.csv"});
     double last = 0;
     io::RecordingReader reader(folder / "r.csv");
     while (const auto event = reader.next()) {
@@ -137,17 +123,15 @@ TEST(Touch, plays_a_numbered_series_and_opens_one_frame_of_it) {
 TEST(Touch, says_which_commands_the_data_do_not_allow) {
     const ScratchFolder folder;
     put_bytes(folder / "c.txt", "0.1 undo\n0.2 play 2\n0.3 quit\n");
-    const Outcome still = palpate(
+    const Outcome still = succeeds(
         folder, "touch " + ball + " --unpaced --device simulated:hand=hold --commands c.txt");
-    EXPECT_EQ(still.status, 0);
     EXPECT_TRUE(contains(still.err, "nothing to undo")) << still.err;
     EXPECT_TRUE(contains(still.err, "no sequence")) << still.err;
     put_bytes(folder / "c.txt", "0.1 brush carve 3\n0.2 quit\n");
     const Outcome moving =
-        palpate(folder,
-                "touch synthetic:beating:16x16x16 --unpaced --device simulated:hand=hold "
-                "--commands c.txt");
-    EXPECT_EQ(moving.status, 0);
+        succeeds(folder,
+                 "touch synthetic:beating:16x16x16 --unpaced --device simulated:hand=hold "
+                 "--commands c.txt");
     EXPECT_TRUE(contains(moving.err, "cannot be edited")) << moving.err;
     for (const char* line :
          {"0 brush carve", "0 brush drill 3", "0 brush carve -3", "0 paint 1,2,3", "0 carve 1,2 3",
@@ -192,7 +176,7 @@ TEST(Touch, a_volume_that_cannot_be_saved_gives_status_5_and_the_session_goes_on
     EXPECT_EQ(done.status, 5);
     EXPECT_TRUE(contains(done.err, "/dev/full: could not be written")) << done.err;
     EXPECT_EQ(rescued_sample(done), 9);
-    EXPECT_EQ(palpate(folder, "replay r.csv --validate").status, 0);
+    succeeds(folder, "replay r.csv --validate");
 }
 
 TEST(Touch, edits_that_cannot_be_saved_at_the_end_are_kept_elsewhere_and_the_recording_too) {
@@ -206,7 +190,7 @@ TEST(Touch, edits_that_cannot_be_saved_at_the_end_are_kept_elsewhere_and_the_rec
     EXPECT_EQ(done.status, 5);
     EXPECT_TRUE(contains(done.err, "o.zarr: is there already")) << done.err;
     EXPECT_EQ(rescued_sample(done), 8);
-    EXPECT_EQ(palpate(folder, "replay r.csv --validate").status, 0);
+    succeeds(folder, "replay r.csv --validate");
 }
 
 TEST(Touch, an_output_that_cannot_be_is_refused_before_the_session) {
@@ -240,7 +224,7 @@ TEST(Touch, an_output_that_cannot_be_is_refused_before_the_session) {
 
 TEST(Touch, a_file_in_use_is_not_saved_over) {
     const ScratchFolder folder;
-    ASSERT_EQ(palpate(folder, "convert " + ball + " -q in.nrrd").status, 0);
+    succeeds(folder, "convert " + ball + " -q in.nrrd");
     put_bytes(folder / "detached.nhdr",
               "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 24 24 24\nspacings: 1 1 1\n"
               "encoding: raw\ndata file: detached.raw\n");
@@ -311,10 +295,9 @@ TEST(PacedTouch, feels_frames_that_another_program_pushes) {
 
 TEST(Demo, sculpt_carves_what_it_feels_and_shows_it) {
     const ScratchFolder folder;
-    const Outcome done = palpate(folder,
-                                 "demo sculpt synthetic:sphere:32x32x32 --duration 1 --pictures 3 "
-                                 "--picture 160 --radius 3 -o out");
-    ASSERT_EQ(done.status, 0) << done.err;
+    succeeds(folder,
+             "demo sculpt synthetic:sphere:32x32x32 --duration 1 --pictures 3 "
+             "--picture 160 --radius 3 -o out");
     const Volume edited = io::read_volume(folder / "out" / "edited.nrrd").volume;
     EXPECT_EQ(edited.geometry().size, Index3(32, 32, 32));
     int felt = 0;
@@ -328,10 +311,8 @@ TEST(Demo, sculpt_carves_what_it_feels_and_shows_it) {
 
 TEST(Demo, beating_feels_each_beat) {
     const ScratchFolder folder;
-    const Outcome done = palpate(
-        folder,
-        "demo beating synthetic:beating:32x32x32 --beats 3 --pictures 3 --picture 160 -o out");
-    ASSERT_EQ(done.status, 0) << done.err;
+    succeeds(folder,
+             "demo beating synthetic:beating:32x32x32 --beats 3 --pictures 3 --picture 160 -o out");
     int rises = 0;
     bool high = false;
     for (const io::TraceRow& row : io::read_trace(folder / "out" / "trace.csv")) {

@@ -199,7 +199,7 @@ TEST(Convert, wrong_use_bad_input_and_outputs_that_cannot_be_leave_nothing_behin
                                {"a.zarr out.zarr --threads 0", 2, "--threads"},
                                {"a.zarr out.zarr --ome-version 0.3", 2, "--ome-version"},
                                {"a.zarr out.zarr --compression lzma", 2, "--compression"},
-                               {"a.zarr out.zarr --level 9", 2, "has 1 levels"},
+                               {"a.zarr out.zarr --level 9", 2, "no level 9: it has 1 level, 0"},
                                {"a.zarr out.zarr --channel 2", 3, "no channel 2"},
                                {"a.zarr out.zarr --time-step 2", 3, "no time 2"},
                                {"absent.nrrd out.zarr", 3, "does not exist"},

@@ -42,8 +42,7 @@ void expect_results(const std::filesystem::path& folder, std::size_t ticks) {
 
 TEST(Demo, leaves_its_results_in_a_folder_that_it_names) {
     const ScratchFolder folder;
-    const Outcome outcome = palpate(folder, quick);
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const Outcome outcome = succeeds(folder, quick);
     EXPECT_EQ(outcome.err, "");
     EXPECT_TRUE(contains(outcome.out, "Results: palpate-demo")) << outcome.out;
     EXPECT_EQ(folder.names(), std::vector<std::string>{"palpate-demo"});
@@ -57,8 +56,7 @@ TEST(Demo, leaves_its_results_in_a_folder_that_it_names) {
 
 TEST(Demo, feels_the_sample_volume_if_none_is_named) {
     const ScratchFolder folder;
-    const Outcome outcome = palpate(folder, "demo --duration 1 --picture 150 -o head");
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const Outcome outcome = succeeds(folder, "demo --duration 1 --picture 150 -o head");
     EXPECT_TRUE(contains(outcome.out, "visible_human_head.nrrd at isovalue 34.5")) << outcome.out;
     expect_results(folder / "head", 1001);
 }
@@ -66,10 +64,8 @@ TEST(Demo, feels_the_sample_volume_if_none_is_named) {
 TEST(Demo, chooses_the_level_of_a_real_volume) {
     SKIP_WITHOUT("fuel_small.nrrd");
     const ScratchFolder folder;
-    const Outcome outcome = palpate(
-        folder, Words{"demo", data_file("fuel_small.nrrd").string(), "--duration", "1", "--picture",
-                      "150", "--motion", "slide", "-o", "my <results> & 'more'"});
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    succeeds(folder, Words{"demo", data_file("fuel_small.nrrd").string(), "--duration", "1",
+                           "--picture", "150", "--motion", "slide", "-o", "my <results> & 'more'"});
     expect_results(folder / "my <results> & 'more'", 1001);
 }
 
@@ -112,9 +108,9 @@ TEST(Demo, uses_an_existing_folder_and_keeps_other_files) {
     std::filesystem::create_directory(left);
     support::put_bytes(left / io::temporary_marker, std::string(io::temporary_marker_text));
     support::put_bytes(left / "surface.png", "half");
-    ASSERT_EQ(palpate(folder, quick + "-o out -q").status, 0);
+    succeeds(folder, quick + "-o out -q");
     expect_results(folder / "out", 501);
-    ASSERT_EQ(palpate(folder, quick + "-o out -q --rate 100 --motion tap").status, 0);
+    succeeds(folder, quick + "-o out -q --rate 100 --motion tap");
     expect_results(folder / "out", 51);
     EXPECT_EQ(support::bytes_of(folder / "out/mine.txt"), "mine");
 }
@@ -131,7 +127,7 @@ TEST(Demo, never_replaces_what_it_reads) {
     const ScratchFolder folder;
     const std::string ball = "convert synthetic:sphere:20x20x20 -q ";
     for (const std::string name : {"edited.nrrd", "other.nrrd"}) {
-        ASSERT_EQ(palpate(folder, ball + name).status, 0);
+        succeeds(folder, ball + name);
     }
     support::put_bytes(folder / "path.csv", "x,y,z\n0,0,0\n1,0,0\n0,1,0\n");
     std::filesystem::copy(folder / "other.nrrd", folder / "animation.png");
@@ -153,11 +149,10 @@ TEST(Demo, never_replaces_what_it_reads) {
 
 TEST(Demo, touches_the_level_of_a_store_that_is_asked_for) {
     const ScratchFolder folder;
-    ASSERT_EQ(palpate(folder, "convert synthetic:sphere:136x40x40 ball.zarr -q").status, 0);
+    succeeds(folder, "convert synthetic:sphere:136x40x40 ball.zarr -q");
     const std::string line = "demo ball.zarr -i 50% --duration 0.05 --picture 64 -q -o out";
     for (const auto& [level, size] : {std::pair{"0", "136 x 40 x 40"}, {"1", "68 x 20 x 20"}}) {
-        const Outcome done = palpate(folder, line + " --coarse-first --level " + level);
-        EXPECT_EQ(done.status, 0) << done.err;
+        const Outcome done = succeeds(folder, line + " --coarse-first --level " + level);
         EXPECT_TRUE(contains(done.err, "--coarse-first does nothing")) << done.err;
         const std::string report = support::bytes_of(folder / "out/report.html");
         EXPECT_TRUE(contains(report, size)) << level;
@@ -198,7 +193,7 @@ TEST(Demo, needs_something_to_touch) {
 
 TEST(Demo, renders_forces_at_any_rate) {
     const ScratchFolder folder;
-    ASSERT_EQ(palpate(folder, quick + "-o out -q --rate 20 -k 0.05").status, 0);
+    succeeds(folder, quick + "-o out -q --rate 20 -k 0.05");
     double most = 0;
     for (const auto& row : io::read_trace(folder / "out/trace.csv")) {
         most = std::max(most, row.force.norm());

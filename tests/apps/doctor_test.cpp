@@ -48,11 +48,9 @@ TEST(Doctor, asks_for_a_device_that_has_to_work) {
 
 TEST(Doctor, finds_a_helper_that_does_not_run) {
     const ScratchFolder folder;
-    const Outcome outcome = Running({"-c",
-                                     "PALPATE_IO_HELPER=/nonexistent PALPATE_PICTURE_HELPER="
-                                     "/nonexistent exec " PALPATE_PROGRAM " doctor --seconds 0"},
-                                    folder.path(), Stdout::captured, "/bin/sh")
-                                .finish();
+    const Outcome outcome = by_bash(folder,
+                                    "PALPATE_IO_HELPER=/nonexistent PALPATE_PICTURE_HELPER="
+                                    "/nonexistent exec \"$0\" doctor --seconds 0");
     EXPECT_EQ(outcome.status, 4);
     for (const char* name : {"helper-io", "helper-pictures", "graphics-missing"}) {
         EXPECT_TRUE(contains(outcome.out, name)) << outcome.out;
@@ -65,10 +63,7 @@ TEST(Doctor, finds_a_reader_that_was_copied_without_those_of_other_formats) {
     std::filesystem::copy_file(build / "libexec/palpate/palpate-io-helper",
                                folder / "palpate-io-helper");
     const Outcome outcome =
-        Running({"-c", "PALPATE_IO_HELPER=$PWD/palpate-io-helper exec " PALPATE_PROGRAM
-                       " doctor --seconds 0"},
-                folder.path(), Stdout::captured, "/bin/sh")
-            .finish();
+        by_bash(folder, "PALPATE_IO_HELPER=$PWD/palpate-io-helper exec \"$0\" doctor --seconds 0");
     EXPECT_EQ(outcome.status, 4);
     EXPECT_TRUE(contains(outcome.out, "palpate-io-dicom is missing in its folder")) << outcome.out;
 }

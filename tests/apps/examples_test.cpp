@@ -27,8 +27,7 @@ TEST(Reference, every_example_of_the_command_line_page_works) {
     const auto lines = examples();
     ASSERT_GT(lines.size(), 8U);
     for (const std::string& line : lines) {
-        const Outcome outcome =
-            Running({"-c", line}, folder.path(), Stdout::captured, "/bin/sh").finish();
+        const Outcome outcome = by_bash(folder, line);
         EXPECT_EQ(outcome.status, 0) << line << "\n" << outcome.err;
         EXPECT_TRUE(line.rfind("palpate", 0) != 0 || !outcome.out.empty()) << line;
     }

@@ -54,8 +54,8 @@ TEST(Extract, the_ply_is_closed_and_encloses_what_the_summary_says) {
     const ScratchFolder folder;
     for (const std::string volume : {"sphere:24x24x24", "noise:16x16x16", "torus:30x30x20",
                                      "noise:1x9x9", "sphere:9x9x9 --solid below"}) {
-        const Outcome outcome = palpate(folder, "extract synthetic:" + volume + " -o a.ply --json");
-        ASSERT_EQ(outcome.status, 0) << outcome.err;
+        const Outcome outcome =
+            succeeds(folder, "extract synthetic:" + volume + " -o a.ply --json");
         const auto summary = nlohmann::json::parse(outcome.out);
         const SurfaceMesh mesh = read_ply(folder / "a.ply");
         EXPECT_EQ(support::flaw_in_closed_mesh(mesh), "") << volume;
@@ -71,8 +71,7 @@ TEST(Extract, every_format_has_the_same_triangles) {
     const ScratchFolder folder;
     std::size_t triangles = 0;
     for (const std::string name : {"a.ply", "a.stl", "a.obj", "a.vtp", "A.PLY"}) {
-        const Outcome outcome = palpate(folder, extract_sphere + name);
-        ASSERT_EQ(outcome.status, 0) << outcome.err;
+        const Outcome outcome = succeeds(folder, extract_sphere + name);
         EXPECT_EQ(outcome.out.rfind(name + ": isovalue 76.5, ", 0), 0U) << outcome.out;
         if (triangles == 0) triangles = read_ply(folder / "a.ply").triangles.size();
         EXPECT_TRUE(contains(outcome.out, std::to_string(triangles) + " triangles"));
@@ -91,13 +90,12 @@ TEST(Extract, every_format_has_the_same_triangles) {
 TEST(Extract, of_a_store_takes_the_level_that_is_asked_for) {
     const ScratchFolder folder;
     const std::string ball = "synthetic:sphere:132x128x128";  // more samples than an overview has
-    ASSERT_EQ(palpate(folder, "convert -q " + ball + " ball.zarr").status, 0);
-    ASSERT_EQ(palpate(folder, "extract -q " + ball + " -i 50% -o whole.ply").status, 0);
+    succeeds(folder, "convert -q " + ball + " ball.zarr");
+    succeeds(folder, "extract -q " + ball + " -i 50% -o whole.ply");
     const std::string extract = "extract ball.zarr -i 50% -o ";
-    EXPECT_EQ(palpate(folder, extract + "fine.ply --level 0").status, 0);
+    succeeds(folder, extract + "fine.ply --level 0");
     EXPECT_EQ(support::bytes_of(folder / "fine.ply"), support::bytes_of(folder / "whole.ply"));
-    const Outcome overview = palpate(folder, extract + "overview.ply");
-    EXPECT_EQ(overview.status, 0);
+    const Outcome overview = succeeds(folder, extract + "overview.ply");
     EXPECT_TRUE(contains(overview.err, "of this overview")) << overview.err;
     expect_failure(palpate(folder, extract + "none.ply -q --level 0 --memory 2MB"), 3,
                    "allow more memory");
@@ -128,7 +126,7 @@ TEST(Extract, an_isovalue_is_needed_for_a_file) {
     support::put_bytes(folder / "v.raw", std::string("\0\1\2\3\4\5\6\7", 8));
     expect_failure(palpate(folder, "extract v.raw --dims 2x2x2 --type uint8 -o a.ply"), 2,
                    "palpate info v.raw suggests some");
-    EXPECT_EQ(palpate(folder, "extract v.raw --dims 2x2x2 --type uint8 -o a.ply -i 50%").status, 0);
+    succeeds(folder, "extract v.raw --dims 2x2x2 --type uint8 -o a.ply -i 50%");
 }
 
 }  // namespace

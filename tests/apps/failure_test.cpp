@@ -25,40 +25,22 @@ void expect_refused(const ScratchFolder& folder, const Words& volume, const std:
     EXPECT_TRUE(fs::is_empty(folder / "results"));
 }
 
-TEST(BadInput, a_file_that_is_not_there_is_named) {
-    const ScratchFolder folder;
-    expect_refused(folder, {"missing.nrrd"}, "does not exist");
-}
-
-TEST(BadInput, an_empty_file_is_refused) {
-    const ScratchFolder folder;
-    put_bytes(folder / "empty.nrrd", "");
-    expect_refused(folder, {"empty.nrrd"}, "is empty");
-}
-
-TEST(BadInput, text_that_is_called_nrrd_is_refused) {
-    const ScratchFolder folder;
-    put_bytes(folder / "text.nrrd", "Dear reader,\nthis is a letter.\n");
-    expect_refused(folder, {"text.nrrd"}, "is not a NRRD file");
-}
-
-TEST(BadInput, an_unknown_extension_is_refused) {
-    const ScratchFolder folder;
-    put_bytes(folder / "a.xyz", "samples");
-    expect_refused(folder, {"a.xyz"}, "dims");
-}
-
-TEST(BadInput, a_folder_without_slices_is_refused) {
-    const ScratchFolder folder;
-    fs::create_directory(folder / "holiday");
-    put_bytes(folder / "holiday/a.txt", "x");
-    expect_refused(folder, {"holiday"}, "no DICOM or TIFF slices");
-}
-
-TEST(BadInput, a_raw_file_of_another_size_is_refused) {
-    const ScratchFolder folder;
-    put_bytes(folder / "a.raw", std::string(26, 'x'));
-    expect_refused(folder, words_of("a.raw --dims 3x3x3 --type uint8"), "has 26 bytes");
+TEST(BadInput, that_is_no_volume_is_refused_with_what_is_wrong) {
+    struct Case {
+        std::string words, file, bytes, reason;
+    };
+    for (const Case& c :
+         {Case{"missing.nrrd", "", "", "does not exist"},
+          {"empty.nrrd", "empty.nrrd", "", "is empty"},
+          {"text.nrrd", "text.nrrd", "Dear reader,\nthis is a letter.\n", "is not a NRRD file"},
+          {"a.xyz", "a.xyz", "samples", "dims"},
+          {"holiday", "holiday/a.txt", "x", "no DICOM or TIFF slices"},
+          {"a.raw --dims 3x3x3 --type uint8", "a.raw", std::string(26, 'x'), "has 26 bytes"}}) {
+        const ScratchFolder folder;
+        fs::create_directories((folder / c.file).parent_path());
+        if (!c.file.empty()) put_bytes(folder / c.file, c.bytes);
+        expect_refused(folder, words_of(c.words), c.reason);
+    }
 }
 
 TEST(BadInput, files_that_are_cut_short_are_refused) {
@@ -101,7 +83,7 @@ TEST(BadInput, a_wrong_spacing_or_size_of_a_raw_file_is_wrong_use) {
         expect_failure(palpate(folder, raw + words), 2, "dims " + words);
     }
     expect_failure(palpate(folder, "info a.raw --dims 3x3x3"), 2, "type");
-    EXPECT_EQ(palpate(folder, raw + "3x3x3").status, 0);
+    succeeds(folder, raw + "3x3x3");
 }
 
 TEST(BadInput, a_refused_trajectory_is_named_with_its_line) {
@@ -131,8 +113,7 @@ TEST(BadInput, a_refused_trajectory_is_named_with_its_line) {
 }
 
 TEST(BadOutput, standard_output_that_is_closed_or_full_is_a_failure) {
-    const ScratchFolder folder;
-    put_trajectory(folder);
+    const MotionFolder folder;
     for (const std::string line :
          {"--help", "--version", "info --help", "info synthetic:noise:9x9x9",
           "info synthetic:noise --json", "extract synthetic:sphere:9x9x9 -o a.ply",
@@ -151,8 +132,7 @@ TEST(BadOutput, standard_output_that_is_closed_or_full_is_a_failure) {
 }
 
 TEST(BadOutput, standard_error_that_is_full_or_closed_loses_words_only) {
-    const ScratchFolder folder;
-    put_trajectory(folder);
+    const MotionFolder folder;
     for (const std::string line :
          {"info synthetic:noise:9x9x9", "extract synthetic:sphere:9x9x9 -i 1e9 -o a.ply",
           "replay synthetic:sphere:24x24x24 -i 1e9 --trajectory t.csv -o a.csv",
@@ -160,16 +140,14 @@ TEST(BadOutput, standard_error_that_is_full_or_closed_loses_words_only) {
           "--seconds 0.1 --record r.csv"}) {
         const Outcome usual = palpate(folder, line);
         for (const char* where : {"2>/dev/full", "2>&-"}) {
-            const std::string command =
-                std::string("exec ") + PALPATE_PROGRAM + " " + line + " " + where + " </dev/null";
+            const std::string command = "exec \"$0\" " + line + " " + where + " </dev/null";
             std::filesystem::remove(folder / "r.csv");
-            Running running({"-c", command}, folder.path(), Stdout::captured, "/bin/sh");
-            const Outcome outcome = running.finish();
+            const Outcome outcome = by_bash(folder, command);
             EXPECT_EQ(outcome.status, usual.status) << command;
             EXPECT_EQ(outcome.status, 0) << command;
         }
     }
-    EXPECT_EQ(palpate(folder, "replay r.csv --validate").status, 0);
+    succeeds(folder, "replay r.csv --validate");
 }
 
 TEST(BadOutput, a_reader_that_has_gone_leaves_no_temporary_file) {
@@ -189,8 +167,7 @@ TEST(BadOutput, a_reader_that_has_gone_leaves_no_temporary_file) {
 }
 
 TEST(BadInput, without_an_end_is_refused) {
-    const ScratchFolder folder;
-    put_trajectory(folder);
+    const MotionFolder folder;
     const std::string replay = "replay synthetic:sphere:24x24x24 -o a.csv --trajectory ";
     expect_failure(palpate(folder, replay + "/dev/zero"), 3, "/dev/zero: is not a text file");
     const std::string touch = "touch synthetic:sphere:24x24x24 --seconds 1 ";
@@ -247,8 +224,7 @@ TEST(BadOutput, a_recordings_reader_that_does_not_read_is_not_waited_for_after_a
 }
 
 TEST(BadOutput, on_a_disk_that_is_full_for_the_path_leaves_no_trace) {
-    const ScratchFolder folder;
-    put_trajectory(folder);
+    const MotionFolder folder;
     put_bytes(folder / "a.csv", "old");
     // One row a tick, but many corners: within the limit of 2 KiB a file the trace fits, the path
     // does not.
@@ -256,12 +232,9 @@ TEST(BadOutput, on_a_disk_that_is_full_for_the_path_leaves_no_trace) {
               "t,x,y,z\n0,-20,0.1,0.2\n0.001,-5,0.1,0.2\n0.002,5,9,0.2\n0.003,5,-9,0.2\n"
               "0.004,5,9,0.2\n0.005,5,-9,0.2\n");
     const Outcome outcome =
-        Running({"-c",
-                 "ulimit -f 2; exec \"$0\" replay synthetic:sphere:64x64x64 --trajectory t.csv -o "
-                 "a.csv --path p.csv",
-                 PALPATE_PROGRAM},
-                folder.path(), Stdout::captured, "/bin/bash")
-            .finish();
+        by_bash(folder,
+                "ulimit -f 2; exec \"$0\" replay synthetic:sphere:64x64x64 --trajectory t.csv -o "
+                "a.csv --path p.csv");
     expect_failure(outcome, 5, "p.csv: could not be written: File too large");
     EXPECT_EQ(folder.names(), (std::vector<std::string>{"a.csv", "t.csv"}));
     EXPECT_EQ(support::bytes_of(folder / "a.csv"), "old");
@@ -270,12 +243,9 @@ TEST(BadOutput, on_a_disk_that_is_full_for_the_path_leaves_no_trace) {
 TEST(BadOutput, of_a_recording_on_a_full_disk_is_told_once) {
     const ScratchFolder folder;
     const Outcome outcome =
-        Running({"-c",
-                 "ulimit -f 32; exec \"$0\" touch synthetic:sphere:24x24x24 --unpaced -q --device "
-                 "simulated:hand=hold --seconds 2 --record r.csv",
-                 PALPATE_PROGRAM},
-                folder.path(), Stdout::captured, "/bin/bash")
-            .finish();
+        by_bash(folder,
+                "ulimit -f 32; exec \"$0\" touch synthetic:sphere:24x24x24 --unpaced -q --device "
+                "simulated:hand=hold --seconds 2 --record r.csv");
     EXPECT_EQ(outcome.status, 5);
     const auto told = outcome.err.find("recording stopped");
     EXPECT_NE(told, std::string::npos) << outcome.err;
@@ -284,8 +254,7 @@ TEST(BadOutput, of_a_recording_on_a_full_disk_is_told_once) {
 }
 
 TEST(BadOutput, names_places_that_cannot_be_written) {
-    const ScratchFolder folder;
-    put_trajectory(folder);
+    const MotionFolder folder;
     fs::create_directory(folder / "folder");
     const auto before = folder.names();
     const std::string replay = "replay synthetic:sphere:24x24x24 --trajectory t.csv -o ";

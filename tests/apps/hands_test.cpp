@@ -30,17 +30,14 @@ std::vector<SessionTick> ticks_of_hand(const std::filesystem::path& path, int ha
 TEST(TouchWithTwo, records_both_in_one_file_each_with_the_forces_of_its_session_alone) {
     const ScratchFolder folder;
     const Outcome both =
-        palpate(folder, "touch " + ball_unpaced + " --device " + presses + " --device " + circles +
-                            " --seconds 0.8 --record both.csv");
-    ASSERT_EQ(both.status, 0) << both.err;
+        succeeds(folder, "touch " + ball_unpaced + " --device " + presses + " --device " + circles +
+                             " --seconds 0.8 --record both.csv");
     EXPECT_TRUE(contains(both.out, "hand 1, device simulated\nticks 8")) << both.out;
     EXPECT_TRUE(contains(both.out, "hand 2, device simulated\nticks 8")) << both.out;
     for (const int hand : {1, 2}) {
         const std::string file = std::to_string(hand) + ".csv";
-        const Outcome alone = palpate(folder, "touch " + ball_unpaced + " --device " +
-                                                  (hand == 1 ? presses : circles) +
-                                                  " --seconds 0.8 --record " + file);
-        ASSERT_EQ(alone.status, 0) << alone.err;
+        succeeds(folder, "touch " + ball_unpaced + " --device " + (hand == 1 ? presses : circles) +
+                             " --seconds 0.8 --record " + file);
         const auto its_own = ticks_of_hand(folder / file),
                    together = ticks_of_hand(folder / "both.csv", hand);
         ASSERT_EQ(together.size(), its_own.size());
@@ -51,14 +48,12 @@ TEST(TouchWithTwo, records_both_in_one_file_each_with_the_forces_of_its_session_
         }
         EXPECT_GT(felt, 50);
     }
-    const Outcome valid = palpate(folder, "replay both.csv --validate");
-    EXPECT_EQ(valid.status, 0) << valid.err;
+    const Outcome valid = succeeds(folder, "replay both.csv --validate");
     EXPECT_TRUE(contains(valid.out, "hand 1, ")) << valid.out;
     EXPECT_TRUE(contains(valid.out, "hand 2, ")) << valid.out;
-    const Outcome again = palpate(folder, "touch " + ball_unpaced +
-                                              " --device recorded:both.csv --device "
-                                              "recorded:both.csv,hand=2 --record again.csv");
-    EXPECT_EQ(again.status, 0) << again.err;
+    succeeds(folder, "touch " + ball_unpaced +
+                         " --device recorded:both.csv --device "
+                         "recorded:both.csv,hand=2 --record again.csv");
     expect_failure(palpate(folder, "replay " + ball_unpaced.substr(0, ball_unpaced.find(' ')) +
                                        " -i 50% --trajectory both.csv -o t.csv"),
                    3, "keep the rows of one hand");
@@ -67,10 +62,9 @@ TEST(TouchWithTwo, records_both_in_one_file_each_with_the_forces_of_its_session_
 TEST(TouchWithTwo, says_in_json_which_hand_is_which_and_lasts_as_long_as_one_of_them) {
     const ScratchFolder folder;
     const Outcome done =
-        palpate(folder, "touch " + ball_unpaced +
-                            " --device simulated:hand=tap,seconds=0.5 --device "
-                            "simulated:omega6,hand=tap,seconds=0.9 --json --quiet");
-    ASSERT_EQ(done.status, 0) << done.err;
+        succeeds(folder, "touch " + ball_unpaced +
+                             " --device simulated:hand=tap,seconds=0.5 --device "
+                             "simulated:omega6,hand=tap,seconds=0.9 --json --quiet");
     const auto report = nlohmann::json::parse(done.out);
     ASSERT_EQ(report["hands"].size(), 2U);
     EXPECT_TRUE(contains(report["hands"][1]["device"].get<std::string>(), "omega"));
@@ -84,10 +78,8 @@ TEST(TouchWithTwo, commands_are_for_both_or_for_the_hand_that_they_name) {
     put_bytes(folder / "c.txt",
               "0.05 isovalue 60%\n0.1 hand 2 isovalue 40%\n0.1 hand 1 stiffness 0.2\n"
               "0.1 damping 0.0005\n0.15 fill 0,0,0:2,2,2 7\n0.3 quit\n");
-    const Outcome done =
-        palpate(folder, "touch " + ball_unpaced + " --device " + presses + " --device " + circles +
-                            " --commands c.txt --record both.csv");
-    ASSERT_EQ(done.status, 0) << done.err;
+    succeeds(folder, "touch " + ball_unpaced + " --device " + presses + " --device " + circles +
+                         " --commands c.txt --record both.csv");
     double levels[2];
     for (const int hand : {1, 2}) {
         const auto ticks = ticks_of_hand(folder / "both.csv", hand);
@@ -106,7 +98,7 @@ TEST(TouchWithTwo, commands_are_for_both_or_for_the_hand_that_they_name) {
         EXPECT_EQ(force->stiffness == 0.2, hand == 1);
     }
     EXPECT_NEAR(levels[0] / levels[1], 1.5, 0.1);
-    EXPECT_EQ(palpate(folder, "replay both.csv --validate").status, 0);
+    succeeds(folder, "replay both.csv --validate");
     put_bytes(folder / "third.txt", "0.1 hand 3 lift\n");
     expect_failure(palpate(folder, "touch " + ball_unpaced + " --device " + presses + " --device " +
                                        circles + " --commands third.txt"),
@@ -156,7 +148,7 @@ TEST(PacedTouchWithTwo, goes_on_with_one_when_the_other_is_unplugged) {
     EXPECT_EQ(done.status, 130) << done.err;
     EXPECT_TRUE(contains(done.err, "hand 1, device haply: lost")) << done.err;
     EXPECT_EQ(last(1).tick.force, Vec3(0, 0, 0));
-    EXPECT_EQ(palpate(folder, "replay both.csv --validate").status, 0);
+    succeeds(folder, "replay both.csv --validate");
 }
 
 }  // namespace

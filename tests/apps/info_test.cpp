@@ -9,8 +9,7 @@ namespace {
 using nlohmann::json;
 
 json info(const ScratchFolder& folder, const Words& words) {
-    const Outcome outcome = palpate(folder, Words{"info", "--json"} + words);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const Outcome outcome = succeeds(folder, Words{"info", "--json"} + words);
     return json::parse(outcome.out, nullptr, false);
 }
 
@@ -94,16 +93,14 @@ TEST(Info, has_nothing_to_suggest_for_constant_data) {
     support::put_bytes(folder / "one.raw", std::string(8, '\7'));
     EXPECT_EQ(info(folder, words_of("one.raw --dims 2x2x2 --type uint8"))["suggested_isovalues"],
               json::array());
-    const Outcome text = palpate(folder, "info one.raw --dims 2x2x2 --type uint8");
-    EXPECT_EQ(text.status, 0);
+    const Outcome text = succeeds(folder, "info one.raw --dims 2x2x2 --type uint8");
     EXPECT_TRUE(contains(text.out, "the data are constant")) << text.out;
-    EXPECT_EQ(palpate(folder, "info synthetic:noise:1x1x1").status, 0);
+    succeeds(folder, "info synthetic:noise:1x1x1");
 }
 
 TEST(Info, prints_the_same_facts_as_text) {
     const ScratchFolder folder;
-    const Outcome text = palpate(folder, "info synthetic:cylinder");
-    EXPECT_EQ(text.status, 0);
+    const Outcome text = succeeds(folder, "info synthetic:cylinder");
     EXPECT_EQ(text.err, "");
     for (const std::string part :
          {"synthetic:cylinder\n", "100 x 100 x 30 samples, float32", "1 x 1 x 1 mm",
@@ -126,9 +123,8 @@ TEST(Info, takes_orientation_and_spacing_from_the_command_line_where_the_file_ha
     EXPECT_EQ(given["orientation"], "L I A");
     EXPECT_EQ(given["spacing_known"], true);
     EXPECT_EQ(given["direction"], json({{1, 0, 0}, {0, 0, -1}, {0, -1, 0}}));
-    const Outcome wrong = palpate(folder, Words{"info"} + raw + Words{"--orientation", "LRA"});
-    EXPECT_EQ(wrong.status, 2);
-    EXPECT_TRUE(contains(wrong.err, "orientation LRA: three letters are needed")) << wrong.err;
+    expect_failure(palpate(folder, Words{"info"} + raw + Words{"--orientation", "LRA"}), 2,
+                   "orientation LRA: three letters are needed");
     const Outcome made = palpate(folder, "info synthetic:sphere --orientation LPS");
     EXPECT_TRUE(contains(made.err, "orientation are for files")) << made.err;
     // Unknown facts stay unknown in the converted file.

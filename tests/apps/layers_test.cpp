@@ -10,15 +10,17 @@ namespace {
 
 using support::put_bytes;
 
-/// Along z into the middle of the sphere (density 1 at its middle, which lies at 0) and back.
-void put_stroke(const ScratchFolder& folder) {
-    std::string text = "t,x,y,z\n";
-    for (int i = 0; i <= 200; ++i) {
-        const double z = -14.5 + 0.15 * std::min(i, 200 - i);
-        text += std::to_string(i * 0.001) + ",0.1,-0.1," + std::to_string(z) + "\n";
+/// With a motion along z into the middle of the sphere (density 1, at 0) and back.
+struct StrokeFolder : ScratchFolder {
+    StrokeFolder() {
+        std::string text = "t,x,y,z\n";
+        for (int i = 0; i <= 200; ++i) {
+            const double z = -14.5 + 0.15 * std::min(i, 200 - i);
+            text += std::to_string(i * 0.001) + ",0.1,-0.1," + std::to_string(z) + "\n";
+        }
+        put_bytes(*this / "t.csv", text);
     }
-    put_bytes(folder / "t.csv", text);
-}
+};
 
 const char* two_layers = R"({"palpate_layers": 1, "units": "%", "layers": [
     {"name": "shell", "level": 20, "stiffness": 0.5, "puncture_force": 0.5},
@@ -55,11 +57,9 @@ std::vector<std::string> story_of(const std::vector<Row>& rows) {
 const std::string stroke = "replay synthetic:sphere:24x24x24 --trajectory t.csv -o a.csv ";
 
 TEST(LayersOption, names_in_a_trace_what_is_touched_and_what_the_hand_is_in) {
-    const ScratchFolder folder;
-    put_stroke(folder);
+    const StrokeFolder folder;
     put_bytes(folder / "two.json", two_layers);
-    const Outcome done = palpate(folder, stroke + "--layers two.json");
-    ASSERT_EQ(done.status, 0) << done.err;
+    succeeds(folder, stroke + "--layers two.json");
     const std::vector<Row> rows = rows_of(folder / "a.csv");
     const std::vector<std::string> begin{"|", "shell|", "|shell", "core_ inner|shell"};
     const std::vector<std::string> story = story_of(rows);
@@ -75,8 +75,7 @@ TEST(LayersOption, names_in_a_trace_what_is_touched_and_what_the_hand_is_in) {
 }
 
 TEST(LayersOption, refuses_what_does_not_fit) {
-    const ScratchFolder folder;
-    put_stroke(folder);
+    const StrokeFolder folder;
     put_bytes(folder / "two.json", two_layers);
     put_bytes(folder / "bad.json", "{\"palpate_layers\": 1, \"layers\": [{\"nam\": 1}]}");
     const auto expect = [&](const std::string& options, int status, const std::string& words) {
@@ -95,10 +94,8 @@ TEST(LayersOption, refuses_what_does_not_fit) {
 }
 
 TEST(LayersOption, warns_of_units_that_the_volume_does_not_have) {
-    const ScratchFolder folder;
-    put_stroke(folder);
-    const Outcome done = palpate(folder, stroke + "--layers ct-needle");
-    EXPECT_EQ(done.status, 0) << done.err;
+    const StrokeFolder folder;
+    const Outcome done = succeeds(folder, stroke + "--layers ct-needle");
     EXPECT_TRUE(contains(done.err, "the layers are in HU")) << done.err;
 }
 
@@ -114,25 +111,22 @@ void put_segmentation(const ScratchFolder& folder) {
 }
 
 TEST(LabelsOption, feels_the_segments_of_a_segmentation_by_name) {
-    const ScratchFolder folder;
-    put_stroke(folder);
+    const StrokeFolder folder;
     put_segmentation(folder);
-    const Outcome done = palpate(folder, stroke + "--labels s.seg.nrrd");
-    ASSERT_EQ(done.status, 0) << done.err;
+    succeeds(folder, stroke + "--labels s.seg.nrrd");
     const std::vector<std::string> story = story_of(rows_of(folder / "a.csv"));
     ASSERT_GE(story.size(), 3U);
     EXPECT_EQ(story[1], "plate|");
     EXPECT_EQ(story[2], "|plate");
     put_bytes(folder / "named.json",
               "{\"palpate_layers\": 1, \"layers\": [{\"name\": \"plate\", \"level\": 0}]}");
-    EXPECT_EQ(palpate(folder, stroke + "--labels s.seg.nrrd --layers named.json").status, 0);
+    succeeds(folder, stroke + "--labels s.seg.nrrd --layers named.json");
     EXPECT_EQ(story_of(rows_of(folder / "a.csv")).size(), 3U)
         << "without a puncture force it holds";
     put_bytes(folder / "other.json",
               "{\"palpate_layers\": 1, \"layers\": [{\"name\": \"bolt\", \"level\": 0}]}");
-    const Outcome other = palpate(folder, stroke + "--labels s.seg.nrrd --layers other.json");
-    EXPECT_EQ(other.status, 2);
-    EXPECT_TRUE(contains(other.err, "has no label 'bolt'; it has plate")) << other.err;
+    expect_failure(palpate(folder, stroke + "--labels s.seg.nrrd --layers other.json"), 2,
+                   "has no label 'bolt'; it has plate");
 }
 
 /// The same place told by the index alone, in a file that has no orientation: z falls there.
@@ -150,8 +144,7 @@ TEST(LabelsOption, lie_beside_a_volume_whose_orientation_is_given) {
     put_bytes(folder / "t.csv", "t,x,y,z\n0,-12,12,4\n0.1,-12,12,-1\n");
     const std::string felt =
         "replay bare.nrrd --trajectory t.csv -o a.csv --labels bare.nrrd --orientation ";
-    const Outcome done = palpate(folder, felt + "RPI");
-    ASSERT_EQ(done.status, 0) << done.err;
+    const Outcome done = succeeds(folder, felt + "RPI");
     EXPECT_FALSE(contains(done.err, "warning")) << done.err;
     EXPECT_EQ(story_of(rows_of(folder / "a.csv")).at(1), "label 4|") << "below z = 0";
 }
@@ -164,8 +157,7 @@ TEST(LabelsOption, warns_where_only_one_file_has_an_orientation) {
     for (const auto& [command, lacks] :
          {std::pair("replay s.seg.nrrd -o a.csv --trajectory t.csv", "bare.nrrd does not give"),
           std::pair("touch s.seg.nrrd --unpaced --seconds 0.1", "bare.nrrd does not give")}) {
-        const Outcome done = palpate(folder, std::string(command) + " --labels bare.nrrd");
-        EXPECT_EQ(done.status, 0) << done.err;
+        const Outcome done = succeeds(folder, std::string(command) + " --labels bare.nrrd");
         EXPECT_TRUE(contains(done.err, std::string(lacks) + " its orientation")) << done.err;
     }
     const Outcome other =
@@ -187,9 +179,9 @@ void put_mixed(const ScratchFolder& folder) {
 TEST(LabelsOption, count_in_the_memory_of_the_program) {
     const ScratchFolder folder;
     const std::string convert = "convert -q synthetic:sphere:";
-    ASSERT_EQ(palpate(folder, convert + "32x32x32 ball.zarr").status, 0);
-    ASSERT_EQ(palpate(folder, convert + "230x220x220 large.nrrd --compress").status, 0);
-    ASSERT_EQ(palpate(folder, convert + "230x220x220 large.zarr").status, 0);
+    succeeds(folder, convert + "32x32x32 ball.zarr");
+    succeeds(folder, convert + "230x220x220 large.nrrd --compress");
+    succeeds(folder, convert + "230x220x220 large.zarr");
     const std::string touch =
         "touch ball.zarr --device simulated:hand=hold --unpaced --seconds 0.01 --memory 40MB ";
     for (const char* labels : {"large.nrrd", "large.zarr"}) {
@@ -198,15 +190,11 @@ TEST(LabelsOption, count_in_the_memory_of_the_program) {
 }
 
 TEST(LabelsOption, feels_levels_where_no_label_is_given) {
-    const ScratchFolder folder;
-    put_stroke(folder);
+    const StrokeFolder folder;
     put_segmentation(folder);
     put_mixed(folder);
-    const Outcome bare = palpate(folder, stroke + "--layers mixed.json");
-    EXPECT_EQ(bare.status, 2);
-    EXPECT_TRUE(contains(bare.err, "name a label volume")) << bare.err;
-    const Outcome done = palpate(folder, stroke + "--labels s.seg.nrrd --layers mixed.json");
-    ASSERT_EQ(done.status, 0) << done.err;
+    expect_failure(palpate(folder, stroke + "--layers mixed.json"), 2, "name a label volume");
+    succeeds(folder, stroke + "--labels s.seg.nrrd --layers mixed.json");
     const std::vector<std::string> story = story_of(rows_of(folder / "a.csv"));
     const auto has = [&](const char* what) { return std::ranges::count(story, what) > 0; };
     EXPECT_TRUE(has("shell|"));
@@ -225,14 +213,11 @@ TEST(LayersOption, are_recorded_and_replayed_bit_for_bit) {
     put_bytes(folder / "c.txt", "0.3 layers off\n0.5 layers microscopy\n0.9 layers two.json\n");
     for (const std::string from :
          {"--layers two.json", "--labels s.seg.nrrd", "--labels s.seg.nrrd --layers mixed.json"}) {
-        const Outcome done =
-            palpate(folder,
-                    "touch synthetic:sphere:32x32x32 --unpaced --device simulated:hand=press "
-                    "--seconds 1.5 --commands c.txt --record r.csv " +
-                        from);
-        ASSERT_EQ(done.status, 0) << done.err;
-        const Outcome valid = palpate(folder, "replay r.csv --validate");
-        EXPECT_EQ(valid.status, 0) << valid.err;
+        succeeds(folder,
+                 "touch synthetic:sphere:32x32x32 --unpaced --device simulated:hand=press "
+                 "--seconds 1.5 --commands c.txt --record r.csv " +
+                     from);
+        const Outcome valid = succeeds(folder, "replay r.csv --validate");
         EXPECT_TRUE(contains(valid.out, "the same bit for bit")) << valid.out;
         std::filesystem::remove(folder / "r.csv");
     }

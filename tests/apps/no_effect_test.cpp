@@ -17,16 +17,14 @@ struct Ineffective {
 class NoEffect : public testing::TestWithParam<Ineffective> {};
 
 TEST_P(NoEffect, is_told_in_one_line_and_the_work_goes_on) {
-    const ScratchFolder folder;
-    put_trajectory(folder);
-    ASSERT_EQ(palpate(folder, std::string("convert ") + small_ball + " still.nrrd").status, 0);
+    const MotionFolder folder;
+    succeeds(folder, std::string("convert ") + small_ball + " still.nrrd");
     support::put_bytes(folder / "tool.csv", "x,y,z\n0,0,0\n1,0,0\n0,1,0\n");
     std::string line = GetParam().words;
     for (auto at = line.find("BALL"); at != std::string::npos; at = line.find("BALL")) {
         line.replace(at, 4, small_ball);
     }
-    const Outcome outcome = palpate(folder, line);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const Outcome outcome = succeeds(folder, line);
     EXPECT_TRUE(contains(outcome.err, "palpate: warning: " + GetParam().warning)) << outcome.err;
     EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
 }
@@ -79,8 +77,7 @@ INSTANTIATE_TEST_SUITE_P(
                     "--depth does nothing: "}));
 
 TEST(NoEffect, says_nothing_of_options_that_have_one) {
-    const ScratchFolder folder;
-    put_trajectory(folder);
+    const MotionFolder folder;
     for (const std::string words :
          {"touch synthetic:beating:12x12x12 --unpaced --seconds 0.05 -q --playback 2 --once",
           "info synthetic:beating:12x12x12 --time-step 1",
@@ -95,20 +92,16 @@ TEST(NoEffect, says_nothing_of_options_that_have_one) {
 }
 
 TEST(NoEffect, ranges_of_a_file_need_no_isovalue) {
-    const ScratchFolder folder;
-    put_trajectory(folder);
-    ASSERT_EQ(palpate(folder, std::string("convert ") + small_ball + " still.nrrd").status, 0);
+    const MotionFolder folder;
+    succeeds(folder, std::string("convert ") + small_ball + " still.nrrd");
     const std::string line = "replay still.nrrd --trajectory t.csv -o a.csv -q ";
-    EXPECT_EQ(palpate(folder, line + "--penetrability ranges --range 100:150").status, 0);
+    succeeds(folder, line + "--penetrability ranges --range 100:150");
     expect_failure(palpate(folder, line), 2, "--isovalue is needed");
 }
 
 /// A shell's view of a pipe whose reader takes one line: statuses and standard error.
 Outcome piped(const ScratchFolder& folder, const std::string& line) {
-    return Running({"-c", "\"$0\" " + line + " | head -n 1 > line; echo ${PIPESTATUS[0]}",
-                    PALPATE_PROGRAM},
-                   folder.path(), Stdout::captured, "/bin/bash")
-        .finish();
+    return by_bash(folder, "\"$0\" " + line + " | head -n 1 > line; echo ${PIPESTATUS[0]}");
 }
 
 TEST(Pipe, to_a_reader_that_takes_one_line_ends_quietly) {
@@ -126,10 +119,7 @@ TEST(Pipe, to_a_reader_that_takes_one_line_ends_quietly) {
     }
     // Text at the end of the work: all was done.
     const Outcome whole =
-        Running(
-            {"-c", "exec 3> >(true); wait $!; \"$0\" touch --help >&3; echo $?", PALPATE_PROGRAM},
-            folder.path(), Stdout::captured, "/bin/bash")
-            .finish();
+        by_bash(folder, "exec 3> >(true); wait $!; \"$0\" touch --help >&3; echo $?");
     EXPECT_EQ(whole.out, "0\n");
     EXPECT_EQ(whole.err, "");
 }

@@ -167,6 +167,19 @@ inline Outcome palpate(const ScratchFolder& folder, const std::string& line,
     return palpate(folder, words_of(line), to);
 }
 
+/// What a line of Bash does, in which "$0" is the program.
+inline Outcome by_bash(const ScratchFolder& folder, const std::string& line) {
+    return Running({"-c", line, PALPATE_PROGRAM}, folder.path(), Stdout::captured, "/bin/bash")
+        .finish();
+}
+
+/// The outcome of a command that has to succeed.
+inline Outcome succeeds(const ScratchFolder& folder, const auto& words) {
+    Outcome outcome = palpate(folder, words);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome;
+}
+
 inline bool is_one_line(const std::string& text) {
     return text.rfind("palpate: ", 0) == 0 && text.find('\n') == text.size() - 1;
 }
@@ -194,5 +207,10 @@ inline void put_trajectory(const ScratchFolder& folder, const std::string& name 
                        "t,x,y,z\n0,-20,0.1,0.2\n0.001,-12,0.1,0.2\n0.002,-9,0.3,0.1\n"
                        "0.003,-8,1.5,0.7\n0.004,-8,2.5,1.7\n0.005,-20,2.5,1.7\n");
 }
+
+/// A folder that has it.
+struct MotionFolder : ScratchFolder {
+    MotionFolder() { put_trajectory(*this); }
+};
 
 }  // namespace palpate::app::test

@@ -16,8 +16,7 @@ using support::Png;
 const std::string render_ball = "render synthetic:sphere:24x24x24 --size 200x160 -o p.png ";
 
 Png picture_of(const ScratchFolder& folder, const std::string& words) {
-    const Outcome outcome = palpate(folder, words);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const Outcome outcome = succeeds(folder, words);
     EXPECT_EQ(outcome.err, "");
     return support::png_from(support::bytes_of(folder / "p.png"));
 }
@@ -76,8 +75,7 @@ TEST(Render, a_hand_alone_gets_its_proxy_spring_and_force) {
         palpate(folder, render_ball + "--hip 0,-5,0 --view front --azimuth 0 --stiffness 0.2");
     EXPECT_EQ(outcome.status, 2);  // a view by name or by angles
     const Outcome drawn =
-        palpate(folder, render_ball + "--hip 0,-5,0.5 --elevation 60 --stiffness 0.2");
-    ASSERT_EQ(drawn.status, 0) << drawn.err;
+        succeeds(folder, render_ball + "--hip 0,-5,0.5 --elevation 60 --stiffness 0.2");
     const Png png = support::png_from(support::bytes_of(folder / "p.png"));
     EXPECT_GT(png.count(is_vermilion), 5U);
     EXPECT_GT(png.count(is_green), 10U);
@@ -95,8 +93,7 @@ TEST(Render, a_hand_alone_gets_its_proxy_spring_and_force) {
 
 TEST(Render, a_hand_in_free_space_is_its_own_proxy) {
     const ScratchFolder folder;
-    const Outcome outcome = palpate(folder, render_ball + "--hip 0,-30,0");
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const Outcome outcome = succeeds(folder, render_ball + "--hip 0,-30,0");
     EXPECT_TRUE(contains(outcome.out, "SCP (0, -30, 0) mm, force 0 N")) << outcome.out;
 }
 
@@ -134,8 +131,7 @@ TEST(Render, points_forces_and_views_are_taken_as_given) {
 }
 
 TEST(Render, draws_the_path_of_a_trace_or_a_path_file) {
-    const ScratchFolder folder;
-    put_trajectory(folder);
+    const MotionFolder folder;
     ASSERT_EQ(palpate(folder,
                       "replay synthetic:sphere:24x24x24 --trajectory t.csv -o trace.csv "
                       "--path path.csv")
@@ -158,16 +154,14 @@ TEST(Render, draws_the_path_of_a_trace_or_a_path_file) {
 TEST(Render, writes_only_the_picture_to_standard_output) {
     const ScratchFolder folder;
     const Outcome outcome =
-        palpate(folder, "render synthetic:sphere:16x16x16 --size 100x100 --output -");
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
+        succeeds(folder, "render synthetic:sphere:16x16x16 --size 100x100 --output -");
     EXPECT_EQ(support::png_from(outcome.out).width, 100U);
     EXPECT_TRUE(folder.names().empty());
 }
 
 TEST(Render, warns_of_a_level_without_surface_and_draws_all_the_same) {
     const ScratchFolder folder;
-    const Outcome outcome = palpate(folder, render_ball + "-i 300");
-    EXPECT_EQ(outcome.status, 0);
+    const Outcome outcome = succeeds(folder, render_ball + "-i 300");
     EXPECT_TRUE(contains(outcome.err, "warning: isovalue 300")) << outcome.err;
     EXPECT_LT(support::png_from(support::bytes_of(folder / "p.png")).count(is_bone),
               100U);  // the legend's

@@ -125,11 +125,9 @@ TEST_P(Path, is_free_all_along_and_ends_on_the_surface) {
                       c.method == "paper" || contains(c.options, "linear") ? Interpolation::linear
                                                                            : Interpolation::cubic);
     put_motion(folder, field, c.isovalue);
-    const Outcome outcome =
-        palpate(folder, Words{"replay", synthetic ? c.volume : data_file(c.volume).string(), "-i",
-                              std::to_string(c.isovalue), "--method", c.method} +
-                            words_of("--trajectory t.csv -o a.csv --path p.csv " + c.options));
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    succeeds(folder, Words{"replay", synthetic ? c.volume : data_file(c.volume).string(), "-i",
+                           std::to_string(c.isovalue), "--method", c.method} +
+                         words_of("--trajectory t.csv -o a.csv --path p.csv " + c.options));
     PathCheck check(field, c.isovalue);
     check.check(io::read_trace(folder / "a.csv"), read_path(folder / "p.csv"));
     check.expect_was_worth_it();
@@ -159,9 +157,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Path, starts_at_the_recovered_point_of_a_hand_inside_the_body) {
     const ScratchFolder folder;
     support::put_bytes(folder / "t.csv", "t,x,y,z\n0,1,2,0.5\n0.001,1,2,0.5\n");
-    const Outcome outcome = palpate(
-        folder, "replay synthetic:sphere:32x32x32 --trajectory t.csv -o a.csv --path p.csv");
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    succeeds(folder, "replay synthetic:sphere:32x32x32 --trajectory t.csv -o a.csv --path p.csv");
     const Field field(scenes::make_volume("synthetic:sphere:32x32x32").volume, Solid::above,
                       std::nullopt, Interpolation::cubic);
     PathCheck check(field, 76.5);

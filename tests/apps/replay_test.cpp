@@ -39,23 +39,23 @@ bool same_but_for_time(const std::vector<io::TraceRow>& a, const std::vector<io:
                       [](const auto& x, const auto& y) { return same_but_for_time(x, y); });
 }
 
-/// `palpate demo`'s own motion, 1001 rows, as t.csv.
-void put_demo_trajectory(const ScratchFolder& folder) {
-    const Outcome demo = palpate(
-        folder,
-        "demo synthetic:sphere:24x24x24 --duration 1 --motion press --picture 120 -o demo -q");
-    ASSERT_EQ(demo.status, 0) << demo.err;
-    std::filesystem::copy(folder / "demo/trajectory.csv", folder / "t.csv");
-}
+/// With `palpate demo`'s own motion, 1001 rows, as t.csv.
+struct DemoFolder : ScratchFolder {
+    DemoFolder() {
+        succeeds(
+            *this,
+            "demo synthetic:sphere:24x24x24 --duration 1 --motion press --picture 120 -o demo -q");
+        std::filesystem::copy(*this / "demo/trajectory.csv", *this / "t.csv");
+    }
+};
 
 TEST(Replay, in_real_time_gives_the_same_ticks_of_a_volume_in_memory_and_marks_those_of_a_store) {
-    const ScratchFolder folder;
-    put_trajectory(folder);
+    const MotionFolder folder;
     const auto rows = replay(folder, "--wait");
     EXPECT_TRUE(same_but_for_time(rows, replay(folder, "--live")));
-    ASSERT_EQ(palpate(folder, "convert -q synthetic:sphere:24x24x24 s.zarr").status, 0);
-    const Outcome live = palpate(folder, "replay s.zarr --trajectory t.csv -o a.csv -i 50% --live");
-    ASSERT_EQ(live.status, 0) << live.err;
+    succeeds(folder, "convert -q synthetic:sphere:24x24x24 s.zarr");
+    const Outcome live =
+        succeeds(folder, "replay s.zarr --trajectory t.csv -o a.csv -i 50% --live");
     const auto lines = table(folder / "a.csv");
     EXPECT_EQ(lines.size(), rows.size() + 1);
     EXPECT_TRUE(contains(lines[0], ",waiting,level"));
@@ -63,8 +63,7 @@ TEST(Replay, in_real_time_gives_the_same_ticks_of_a_volume_in_memory_and_marks_t
 }
 
 TEST(Replay, writes_the_columns_of_the_contract_one_row_per_input_row) {
-    const ScratchFolder folder;
-    put_trajectory(folder);
+    const MotionFolder folder;
     replay(folder);
     const auto lines = table(folder / "a.csv");
     ASSERT_EQ(lines.size(), 7U);
@@ -78,8 +77,7 @@ TEST(Replay, writes_the_columns_of_the_contract_one_row_per_input_row) {
 }
 
 TEST(Replay, repeats_the_positions_of_the_hand_bit_for_bit) {
-    const ScratchFolder folder;
-    put_demo_trajectory(folder);
+    const DemoFolder folder;
     const auto in = io::read_trajectory(folder / "t.csv");
     const auto out = replay(folder);
     ASSERT_EQ(in.time.size(), 1001U);
@@ -100,8 +98,7 @@ TEST(Replay, repeats_the_positions_of_the_hand_bit_for_bit) {
 }
 
 TEST(Replay, gives_the_same_twice_but_for_the_times) {
-    const ScratchFolder folder;
-    put_demo_trajectory(folder);
+    const DemoFolder folder;
     const auto once = replay(folder, "--path p.csv");
     const std::string path = support::bytes_of(folder / "p.csv");
     const auto twice = replay(folder, "--path q.csv");
@@ -114,8 +111,7 @@ TEST(Replay, gives_the_same_twice_but_for_the_times) {
 }
 
 TEST(Replay, force_is_stiffness_times_depth_within_the_limit_from_the_first_tick) {
-    const ScratchFolder folder;
-    put_demo_trajectory(folder);
+    const DemoFolder folder;
     for (const auto& [options, stiffness, limit] :
          {std::tuple{"", 0.5, 3.3}, std::tuple{"-k 2", 2.0, 3.3},
           std::tuple{"-k 4 --force-limit 20", 4.0, 20.0},
@@ -148,8 +144,7 @@ TEST(Replay, ramps_the_force_if_asked_to) {
 }
 
 TEST(Replay, every_method_and_penetrability_gives_finite_rows) {
-    const ScratchFolder folder;
-    put_demo_trajectory(folder);
+    const DemoFolder folder;
     for (const std::string method : {"exact", "paper", "gradient", "gradient-improved"}) {
         for (const std::string giving :
              {"off", "threshold --threshold 0.3", "threshold --threshold 0.3 --minimum 50%",
@@ -165,8 +160,7 @@ TEST(Replay, every_method_and_penetrability_gives_finite_rows) {
 }
 
 TEST(Replay, a_penetrable_surface_gives_way_at_the_threshold) {
-    const ScratchFolder folder;
-    put_demo_trajectory(folder);
+    const DemoFolder folder;
     double deepest = 0;
     for (const auto& row : replay(folder)) deepest = std::max(deepest, (row.scp - row.hip).norm());
     EXPECT_GT(deepest, 1.5);
@@ -179,8 +173,7 @@ TEST(Replay, a_penetrable_surface_gives_way_at_the_threshold) {
 }
 
 TEST(Replay, accepts_all_options_of_force_and_method_together) {
-    const ScratchFolder folder;
-    put_demo_trajectory(folder);
+    const DemoFolder folder;
     const auto rows = replay(folder,
                              "--friction 0.5,0.3 --magnet 1,0.2 --texture 0.1,2 --damping 0.0005 "
                              "--viscosity 0.0005 --force-rate 1000 --rate 2000 --scale 2 --json");
@@ -203,8 +196,7 @@ TEST(Replay, solid_below_and_a_background_turn_the_body_inside_out) {
 }
 
 TEST(Replay, isovalues_in_units_and_in_percent_are_the_same) {
-    const ScratchFolder folder;
-    put_trajectory(folder);
+    const MotionFolder folder;
     const auto info =
         nlohmann::json::parse(palpate(folder, "info synthetic:sphere:24x24x24 --json").out);
     const double half = 0.5 * (info["minimum"].get<double>() + info["maximum"].get<double>());
@@ -214,8 +206,7 @@ TEST(Replay, isovalues_in_units_and_in_percent_are_the_same) {
 }
 
 TEST(Replay, reads_trajectories_with_comments_blank_lines_and_further_columns) {
-    const ScratchFolder folder;
-    put_trajectory(folder);
+    const MotionFolder folder;
     const auto plain = replay(folder);
     for (const std::string text :
          {"\xEF\xBB\xBF# by hand\r\nt,x,y,z\r\n0,-20,0.1,0.2\r\n0.001,-12,0.1,0.2\r\n\r\n"
@@ -229,8 +220,7 @@ TEST(Replay, reads_trajectories_with_comments_blank_lines_and_further_columns) {
 }
 
 TEST(Replay, accepts_times_of_any_size_and_start) {
-    const ScratchFolder folder;
-    put_trajectory(folder);
+    const MotionFolder folder;
     const auto plain = replay(folder);
     const std::vector<std::vector<double>> clocks{
         {1e9, 1e9 + 1, 1e9 + 2, 1e9 + 3, 1e9 + 4, 1e9 + 5}, {-5, -1, 0, 1e-9, 0.5, 1e4}};
@@ -257,16 +247,13 @@ TEST(Replay, a_volume_one_voxel_thin_is_felt) {
     const ScratchFolder folder;
     support::put_bytes(folder / "t.csv", "t,x,y,z\n0,-5,0,0\n0.1,0,0,0\n");
     for (const std::string size : {"1x16x16", "16x1x16", "16x16x1", "1x1x16"}) {
-        const Outcome outcome = palpate(
-            folder, "replay synthetic:sphere:" + size + " --trajectory t.csv -o a.csv -i 1%");
-        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        succeeds(folder, "replay synthetic:sphere:" + size + " --trajectory t.csv -o a.csv -i 1%");
         EXPECT_EQ(io::read_trace(folder / "a.csv").size(), 2U);
     }
 }
 
 TEST(Replay, the_summary_is_json_for_scripts_and_silent_when_quiet) {
-    const ScratchFolder folder;
-    put_trajectory(folder);
+    const MotionFolder folder;
     const auto j = nlohmann::json::parse(palpate(folder, on_sphere + "--json").out);
     EXPECT_EQ(j["ticks"], 6);
     EXPECT_EQ(j["constrained"], 1);
@@ -276,8 +263,7 @@ TEST(Replay, the_summary_is_json_for_scripts_and_silent_when_quiet) {
 }
 
 TEST(Replay, prints_nothing_else_where_a_table_goes_to_standard_output) {
-    const ScratchFolder folder;
-    put_trajectory(folder);
+    const MotionFolder folder;
     const std::string line = "replay synthetic:sphere:24x24x24 --trajectory t.csv ";
     const Outcome trace = palpate(folder, line + "-o -");
     EXPECT_EQ(io::parse_trace(trace.out, "stdout").size(), 6U);
@@ -286,12 +272,11 @@ TEST(Replay, prints_nothing_else_where_a_table_goes_to_standard_output) {
     EXPECT_TRUE(contains(path.out, "tick,x,y,z\n0,-20,"));
     expect_failure(palpate(folder, line + "-o - --json"), 2, "standard output");
     expect_failure(palpate(folder, line + "-o - --path -"), 2, "two outputs");
-    EXPECT_EQ(palpate(folder, line + "-o /dev/null --path /dev/null").status, 0);
+    succeeds(folder, line + "-o /dev/null --path /dev/null");
 }
 
 TEST(Replay, an_input_is_never_replaced) {
-    const ScratchFolder folder;
-    put_trajectory(folder);
+    const MotionFolder folder;
     const std::string before = support::bytes_of(folder / "t.csv");
     std::filesystem::create_symlink("t.csv", folder / "link.csv");
     std::filesystem::create_hard_link(folder / "t.csv", folder / "hard.csv");
@@ -315,11 +300,9 @@ TEST(Replay, accepts_file_names_with_blanks_and_quotes) {
     const ScratchFolder folder;
     std::filesystem::create_directory(folder / "it's a \"folder\"");
     put_trajectory(folder, "it's a \"folder\"/my hand.csv");
-    const Outcome outcome =
-        palpate(folder, Words{"replay", "synthetic:sphere:24x24x24", "--trajectory",
-                              "it's a \"folder\"/my hand.csv", "--output",
-                              "it's a \"folder\"/what it felt.csv"});
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    succeeds(folder, Words{"replay", "synthetic:sphere:24x24x24", "--trajectory",
+                           "it's a \"folder\"/my hand.csv", "--output",
+                           "it's a \"folder\"/what it felt.csv"});
     EXPECT_EQ(io::read_trace(folder / "it's a \"folder\"/what it felt.csv").size(), 6U);
 }
 

@@ -55,8 +55,7 @@ TEST(SettingsTable, each_number_of_the_force_can_be_changed_while_it_is_felt) {
     support::put_bytes(folder / "all.txt", script);
     const std::string line =
         "touch synthetic:sphere:16x16x16 --unpaced --seconds 0.2 --record r.csv --commands ";
-    const Outcome done = palpate(folder, line + "all.txt");
-    EXPECT_EQ(done.status, 0) << done.err;
+    succeeds(folder, line + "all.txt");
     const std::string recorded = support::bytes_of(folder / "r.csv");
     for_each_option([&](const std::string&, const auto& one) {
         if constexpr (std::same_as<decltype(one.member), double ForceSettings::*>) {

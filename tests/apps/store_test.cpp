@@ -29,17 +29,14 @@ void put_ramp(const fs::path& folder, const std::string& blocks = "[16,16,16]",
 TEST(Store, info_tells_format_levels_and_spacing_and_replay_feels_it) {
     const ScratchFolder folder;
     put_ramp(folder / "ramp.n5");
-    const Outcome info = palpate(folder, "info -q --json ramp.n5");
-    EXPECT_EQ(info.status, 0) << info.err;
+    const Outcome info = succeeds(folder, "info -q --json ramp.n5");
     const json told = json::parse(info.out);
     EXPECT_EQ(told.at("format"), "N5");
     EXPECT_EQ(told.at("spacing_mm"), json({0.5, 0.5, 1.0}));
     EXPECT_EQ(told.at("levels").size(), 1U);
     EXPECT_EQ(told.at("channels"), json::array());
     put_bytes(folder / "t.csv", "t,x,y,z\n0,1,4,8\n0.001,3,4,8\n0.002,6,4,8\n");
-    const Outcome replay =
-        palpate(folder, "replay -q ramp.n5 --trajectory t.csv -i 75 --field linear -o trace.csv");
-    EXPECT_EQ(replay.status, 0) << replay.err;
+    succeeds(folder, "replay -q ramp.n5 --trajectory t.csv -i 75 --field linear -o trace.csv");
     // The level of 75 lies half a sample beyond the seventh: at 3.75 mm.
     const std::string trace = support::bytes_of(folder / "trace.csv");
     EXPECT_TRUE(contains(trace, "constrained")) << trace;
@@ -48,9 +45,7 @@ TEST(Store, info_tells_format_levels_and_spacing_and_replay_feels_it) {
 
 /// As palpate(), with at most 3 GB of memory in its address space.
 Outcome palpate_in_3_gb(const ScratchFolder& folder, const std::string& line) {
-    return Running({"-c", "ulimit -v 3000000 && exec \"$0\" " + line, std::string(PALPATE_PROGRAM)},
-                   folder.path(), Stdout::captured, "/bin/sh")
-        .finish();
+    return by_bash(folder, "ulimit -v 3000000 && exec \"$0\" " + line);
 }
 
 TEST(Store, info_lists_the_channels_of_a_store) {
@@ -59,8 +54,7 @@ TEST(Store, info_lists_the_channels_of_a_store) {
     put_ramp(folder / "two.n5/c1/s0");
     const Outcome as_json = palpate(folder, "info -q --json two.n5");
     EXPECT_EQ(json::parse(as_json.out).at("channels"), json({"channel 0", "channel 1"}));
-    const Outcome text = palpate(folder, "info -q two.n5 --channel 1");
-    EXPECT_EQ(text.status, 0) << text.err;
+    const Outcome text = succeeds(folder, "info -q two.n5 --channel 1");
     EXPECT_TRUE(contains(text.out, "channels     channel 0, channel 1 (1 was taken)")) << text.out;
 }
 

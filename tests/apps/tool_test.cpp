@@ -32,30 +32,25 @@ void put_poses(const ScratchFolder& folder) {
 
 TEST(ToolCommand, writes_the_points_of_a_tool_and_says_what_it_is) {
     const ScratchFolder folder;
-    const Outcome made = palpate(folder, "tool sphere:3 --spacing 1 --points p.csv --json");
-    ASSERT_EQ(made.status, 0) << made.err;
+    const Outcome made = succeeds(folder, "tool sphere:3 --spacing 1 --points p.csv --json");
     const auto json = nlohmann::json::parse(made.out);
     const auto points = numbers(folder / "p.csv", {"x", "y", "z"});
     EXPECT_EQ(json["points"], points.size());
     for (const auto& p : points) EXPECT_NEAR(std::hypot(p[0], p[1], p[2]), 3, 1e-12);
     // The table is a tool again.
-    const Outcome again = palpate(folder, "tool p.csv --points q.csv -q");
-    ASSERT_EQ(again.status, 0) << again.err;
+    succeeds(folder, "tool p.csv --points q.csv -q");
     EXPECT_EQ(numbers(folder / "q.csv", {"x", "y", "z"}), points);
-    const Outcome spoon = palpate(folder, "tool spoon");
-    EXPECT_EQ(spoon.status, 2);
-    EXPECT_TRUE(contains(spoon.err, "sphere:RADIUS")) << spoon.err;
+    expect_failure(palpate(folder, "tool spoon"), 2, "sphere:RADIUS");
     EXPECT_EQ(palpate(folder, "tool missing.csv").status, 3);
 }
 
 TEST(ToolReplay, gives_poses_wrenches_and_contacts) {
     const ScratchFolder folder;
     put_poses(folder);
-    const Outcome outcome = palpate(
+    const Outcome outcome = succeeds(
         folder,
         "replay synthetic:sphere:24x24x24 --trajectory t.csv -o a.csv --tool box:6,2,2 --poses "
         "poses.csv --json");
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
     const auto trace = numbers(folder / "a.csv",
                                {"scp_x", "scp_y", "scp_z", "proxy_qw", "proxy_qx", "proxy_qy",
                                 "proxy_qz", "torque_x", "torque_y", "torque_z", "contacts", "qw"});
@@ -80,9 +75,8 @@ TEST(ToolReplay, gives_poses_wrenches_and_contacts) {
     EXPECT_LT(json["worst_surface_error"], 1e-6);
 
     // The trace is a trajectory again, orientation included.
-    const Outcome again = palpate(
-        folder, "replay synthetic:sphere:24x24x24 --trajectory a.csv -o b.csv --tool box:6,2,2 -q");
-    ASSERT_EQ(again.status, 0) << again.err;
+    succeeds(folder,
+             "replay synthetic:sphere:24x24x24 --trajectory a.csv -o b.csv --tool box:6,2,2 -q");
     const auto turns = numbers(folder / "b.csv", {"proxy_qw", "proxy_qy"});
     ASSERT_EQ(turns.size(), trace.size());
     for (std::size_t i = 0; i < turns.size(); ++i) {

@@ -50,9 +50,8 @@ Ticks ticks_of(const std::filesystem::path& path) {
 
 TEST(Touch, a_simulated_hand_feels_and_its_recording_replays_bit_for_bit) {
     const ScratchFolder folder;
-    const Outcome done = palpate(
+    const Outcome done = succeeds(
         folder, "touch " + unpaced + " --device simulated:hand=press --seconds 1.5 --record r.csv");
-    EXPECT_EQ(done.status, 0) << done.err;
     EXPECT_TRUE(contains(done.out, ", unpaced")) << done.out;
     const Ticks ticks = ticks_of(folder / "r.csv");
     EXPECT_GE(ticks.last.tick.time, 1.5);
@@ -60,8 +59,7 @@ TEST(Touch, a_simulated_hand_feels_and_its_recording_replays_bit_for_bit) {
     EXPECT_EQ(ticks.count, std::llround(1000 * ticks.last.tick.time) + 1);
     EXPECT_GT(ticks.felt, 50);
     EXPECT_LE(ticks.largest_force, 3.3 + 1e-12);
-    const Outcome valid = palpate(folder, "replay r.csv --validate");
-    EXPECT_EQ(valid.status, 0) << valid.err;
+    const Outcome valid = succeeds(folder, "replay r.csv --validate");
     EXPECT_TRUE(contains(valid.out, "bit for bit")) << valid.out;
     EXPECT_TRUE(contains(valid.out, std::to_string(ticks.count) + " ticks")) << valid.out;
 }
@@ -70,11 +68,10 @@ TEST(Touch, without_the_clock_the_same_session_gives_the_same_ticks) {
     const ScratchFolder folder;
     put_bytes(folder / "c.txt", "0.1 isovalue 60%\n0.2 brush carve 4 50\n0.5 undo\n");
     for (const std::string file : {"a.csv", "b.csv"}) {
-        const Outcome done = palpate(folder, "touch " + unpaced +
-                                                 " --device simulated:hand=press --seconds 0.7 "
-                                                 "--commands c.txt --record " +
-                                                 file);
-        EXPECT_EQ(done.status, 0) << done.err;
+        succeeds(folder, "touch " + unpaced +
+                             " --device simulated:hand=press --seconds 0.7 "
+                             "--commands c.txt --record " +
+                             file);
     }
     const auto table = [&](const std::string& file) {
         const std::string text = bytes_of(folder / file);
@@ -88,13 +85,11 @@ TEST(Touch, without_the_clock_the_same_session_gives_the_same_ticks) {
 TEST(PacedTouch, reports_what_the_servo_took_and_what_the_machine) {
     const ScratchFolder folder;
     const std::string line = "touch " + sphere + " --device simulated:hand=tap,seconds=0.5";
-    const Outcome done = palpate(folder, line);
-    EXPECT_EQ(done.status, 0) << done.err;
+    const Outcome done = succeeds(folder, line);
     EXPECT_TRUE(contains(done.out, "compute time (ours)")) << done.out;
     EXPECT_TRUE(contains(done.out, "lateness (the machine)")) << done.out;
     EXPECT_TRUE(contains(done.err, "real-time priority")) << done.err;
-    const Outcome quiet = palpate(folder, line + " --json --quiet");
-    EXPECT_EQ(quiet.status, 0) << quiet.err;
+    const Outcome quiet = succeeds(folder, line + " --json --quiet");
     EXPECT_EQ(quiet.err, "");
     const auto report = nlohmann::json::parse(quiet.out);
     EXPECT_GT(report["ticks"], 0);
@@ -107,9 +102,8 @@ TEST(Touch, starts_when_the_force_is_small_and_bounds_its_work_by_the_rate) {
     const ScratchFolder folder;
     for (const auto& [rate, budget] : {std::pair{1000, 4096}, std::pair{8000, 512}}) {
         const std::string file = std::to_string(rate) + ".csv";
-        const Outcome done = palpate(folder, "touch " + unpaced + " --seconds 0.05 --rate " +
-                                                 std::to_string(rate) + " --record " + file);
-        EXPECT_EQ(done.status, 0) << done.err;
+        succeeds(folder, "touch " + unpaced + " --seconds 0.05 --rate " + std::to_string(rate) +
+                             " --record " + file);
         const io::RecordingReader reader(folder / file);
         EXPECT_EQ(reader.head().settings.force.start_below, 0.3);
         EXPECT_EQ(reader.head().settings.proxy.step_budget, budget);
@@ -123,13 +117,11 @@ TEST(Touch, says_in_a_line_that_wide_terraces_are_felt_unless_they_are_gone) {
         "touch synthetic:cylinder:100x100x30 --type uint8 --headless "
         "--unpaced --seconds 0.05 --device simulated:hand=tap";
     const std::string said = "try --dequantize: rounding to levels of 1 makes terraces";
-    const Outcome told = palpate(folder, line);
-    EXPECT_EQ(told.status, 0) << told.err;
+    const Outcome told = succeeds(folder, line);
     EXPECT_TRUE(contains(told.err, "palpate: note: synthetic:cylinder")) << told.err;
     EXPECT_TRUE(contains(told.err, said)) << told.err;
     for (const std::string other : {" --dequantize", " --smooth 1", " --quiet"}) {
-        const Outcome silent = palpate(folder, line + other);
-        EXPECT_EQ(silent.status, 0) << silent.err;
+        const Outcome silent = succeeds(folder, line + other);
         EXPECT_FALSE(contains(silent.err, said)) << silent.err;
     }
     EXPECT_FALSE(contains(palpate(folder, "touch " + unpaced + " --seconds 0.05").err, said));
@@ -137,9 +129,8 @@ TEST(Touch, says_in_a_line_that_wide_terraces_are_felt_unless_they_are_gone) {
 
 TEST(Touch, ends_when_the_hand_has_finished) {
     const ScratchFolder folder;
-    const Outcome done = palpate(
+    const Outcome done = succeeds(
         folder, "touch " + unpaced + " --device simulated:hand=tap,seconds=0.5 --json --quiet");
-    EXPECT_EQ(done.status, 0) << done.err;
     EXPECT_EQ(done.err, "");
     const auto report = nlohmann::json::parse(done.out);
     EXPECT_GT(report["ticks"], 450);
@@ -149,9 +140,8 @@ TEST(Touch, ends_when_the_hand_has_finished) {
 TEST(Touch, gives_no_force_to_a_hand_that_is_faster_than_is_plausible) {
     const ScratchFolder folder;
     const std::string press = "touch " + unpaced + " --device simulated:hand=press,seconds=0.5 -q";
-    EXPECT_EQ(palpate(folder, press + " --record usual.csv").status, 0);
-    const Outcome slow = palpate(folder, press + " --record slow.csv --fastest-hand 0.001");
-    EXPECT_EQ(slow.status, 0) << slow.err;
+    succeeds(folder, press + " --record usual.csv");
+    const Outcome slow = succeeds(folder, press + " --record slow.csv --fastest-hand 0.001");
     io::RecordingReader reader(folder / "slow.csv");
     EXPECT_EQ(reader.head().session.fastest_hand, 0.001);
     EXPECT_GT(ticks_of(folder / "usual.csv").felt, 0);
@@ -165,16 +155,14 @@ TEST(Touch, carries_out_and_records_commands) {
               "0.3 friction 0.4,0.2\n0.4 stiffness 0.25\n0.5 scale 1.5  # about the SCP\n"
               "0.6 freeze on\n0.7 freeze off\n0.75 lift\n0.8 forces off\n1.0 quit\n"
               "9 forces on\n");
-    const Outcome done =
-        palpate(folder, "touch " + unpaced + " --commands commands.txt --record r.csv");
-    EXPECT_EQ(done.status, 0) << done.err;
+    succeeds(folder, "touch " + unpaced + " --commands commands.txt --record r.csv");
     const Ticks ticks = ticks_of(folder / "r.csv");
     EXPECT_EQ(ticks.commands, 9);
     // The transform follows from the commands. The change of the scale follows from the ways of
     // hand and HIP.
     EXPECT_NEAR(ticks.last_way / ticks.last_device_way, 1.5, 1e-6);
     EXPECT_NE(ticks.last.tick.force_flags & force_off, 0);
-    EXPECT_EQ(palpate(folder, "replay r.csv --validate").status, 0);
+    succeeds(folder, "replay r.csv --validate");
 }
 
 TEST(Touch, carries_out_in_order_all_commands_that_are_due_at_once) {
@@ -183,10 +171,9 @@ TEST(Touch, carries_out_in_order_all_commands_that_are_due_at_once) {
     std::string text;
     for (int i = 0; i < count; ++i) text += "0.1 isovalue " + std::to_string(60 + i % 7) + "\n";
     put_bytes(folder / "commands.txt", text + "0.1 isovalue 61\n0.1 quit\n");
-    const Outcome done = palpate(folder, "touch " + unpaced +
-                                             " --device simulated:hand=press,loop=yes --commands "
-                                             "commands.txt --record r.csv");
-    EXPECT_EQ(done.status, 0) << done.err;
+    const Outcome done = succeeds(folder, "touch " + unpaced +
+                                              " --device simulated:hand=press,loop=yes --commands "
+                                              "commands.txt --record r.csv");
     const Ticks ticks = ticks_of(folder / "r.csv");
     EXPECT_EQ(ticks.commands, count + 1);
     EXPECT_EQ(ticks.last.tick.proxy.isovalue, 61);
@@ -201,9 +188,8 @@ TEST(Touch, counts_the_commands_that_the_end_left_no_time_for_in_one_line) {
     std::string text;
     for (int i = 0; i < 300'000; ++i) text += "0.1 isovalue 60\n";
     put_bytes(folder / "commands.txt", text);
-    const Outcome done =
-        palpate(folder, "touch " + unpaced + " --commands commands.txt --seconds 1 --record r.csv");
-    EXPECT_EQ(done.status, 0) << done.err;
+    const Outcome done = succeeds(
+        folder, "touch " + unpaced + " --commands commands.txt --seconds 1 --record r.csv");
     const std::int64_t carried_out = ticks_of(folder / "r.csv").commands;
     EXPECT_GT(carried_out, 1000);
     EXPECT_TRUE(contains(done.err, std::to_string(300'000 - carried_out) +
@@ -217,8 +203,7 @@ TEST(Touch, takes_commands_with_a_byte_order_mark_and_the_line_ends_of_windows) 
     put_bytes(folder / "c.txt",
               "\xEF\xBB\xBF"
               "0 freeze on\r\n0.1 quit\r\n");
-    const Outcome done = palpate(folder, "touch " + unpaced + " --commands c.txt");
-    EXPECT_EQ(done.status, 0) << done.err;
+    succeeds(folder, "touch " + unpaced + " --commands c.txt");
 }
 
 TEST(Touch, refuses_commands_that_it_does_not_understand_before_anything_runs) {
@@ -266,8 +251,7 @@ TEST(Touch, leaves_a_recording_that_replays_up_to_its_end_when_killed) {
                bytes_of(folder / "r.csv").size() > 60'000;
     }));
     EXPECT_EQ(running.finish(SIGKILL).status, 1000 + SIGKILL);
-    const Outcome valid = palpate(folder, "replay r.csv --validate");
-    EXPECT_EQ(valid.status, 0) << valid.err;
+    const Outcome valid = succeeds(folder, "replay r.csv --validate");
     EXPECT_TRUE(contains(valid.out, "cut off before its end")) << valid.out;
 }
 
@@ -278,11 +262,10 @@ TEST(Touch, a_recording_serves_as_a_device) {
                   .status,
               0);
     const Outcome again =
-        palpate(folder, "touch " + unpaced + " --device recorded:r.csv --record again.csv");
-    EXPECT_EQ(again.status, 0) << again.err;
+        succeeds(folder, "touch " + unpaced + " --device recorded:r.csv --record again.csv");
     EXPECT_GT(ticks_of(folder / "again.csv").felt, 20);
-    EXPECT_EQ(palpate(folder, "replay again.csv --validate").status, 0);
-    EXPECT_EQ(palpate(folder, "replay " + sphere + " --trajectory r.csv -o t.csv").status, 0);
+    succeeds(folder, "replay again.csv --validate");
+    succeeds(folder, "replay " + sphere + " --trajectory r.csv -o t.csv");
 }
 
 TEST(Touch, refuses_options_that_make_no_sense) {
@@ -329,8 +312,7 @@ TEST(Touch, a_recording_never_replaces_a_file) {
 
 TEST(Devices, lists_each_device_with_what_was_found_or_what_is_missing) {
     const ScratchFolder folder;
-    const Outcome list = palpate(folder, "devices --json");
-    EXPECT_EQ(list.status, 0) << list.err;
+    const Outcome list = succeeds(folder, "devices --json");
     std::vector<std::string> names;
     for (const auto& device : nlohmann::json::parse(list.out)) {
         names.push_back(device["name"]);
@@ -425,8 +407,7 @@ TEST(Validate, a_device_that_sent_implausible_readings_replays_bit_for_bit) {
         palpate(folder, "touch " + unpaced + " --device recorded:device.csv --record r.csv").status,
         0);
     EXPECT_TRUE(contains(bytes_of(folder / "r.csv"), "nan"));
-    const Outcome valid = palpate(folder, "replay r.csv --validate");
-    EXPECT_EQ(valid.status, 0) << valid.err;
+    succeeds(folder, "replay r.csv --validate");
 }
 
 TEST(Validate, reports_events_that_the_recording_lost) {
@@ -443,7 +424,7 @@ TEST(Validate, refuses_another_volume_and_accepts_the_right_one_from_elsewhere) 
     const Words words{"replay", "r.csv", "--validate", "--volume"};
     expect_failure(palpate(recorded.folder, words + Words{"synthetic:torus:32x32x32"}), 3,
                    "is not the volume of the recording");
-    EXPECT_EQ(palpate(recorded.folder, words + Words{sphere}).status, 0);
+    succeeds(recorded.folder, words + Words{sphere});
     expect_failure(recorded.validate_with(sphere, "gone.nrrd"), 3, "gone.nrrd");
     expect_failure(recorded.validate_with("\"exact\"", "\"magic\""), 3, "magic");
     expect_failure(recorded.validate_with("\"limit\": 3.3", "\"limit\": -1"), 3,
@@ -451,8 +432,7 @@ TEST(Validate, refuses_another_volume_and_accepts_the_right_one_from_elsewhere) 
 }
 
 TEST(Validate, refuses_outputs_and_anything_but_recordings) {
-    const ScratchFolder folder;
-    put_trajectory(folder);
+    const MotionFolder folder;
     expect_failure(palpate(folder, "replay t.csv --validate"), 3, "is no recording");
     for (const std::string options : {"-o x.csv", "--json", "--stiffness 3", "--path p.csv"}) {
         expect_failure(palpate(folder, "replay t.csv --validate " + options), 2,

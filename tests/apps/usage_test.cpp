@@ -19,8 +19,7 @@ TEST(Usage, the_help_of_a_command_says_what_this_command_does) {
 
 TEST(Usage, every_command_has_help_with_an_example) {
     const ScratchFolder folder;
-    const Outcome all = palpate(folder, "--help");
-    EXPECT_EQ(all.status, 0);
+    const Outcome all = succeeds(folder, "--help");
     for (const std::string command : commands) {
         EXPECT_TRUE(contains(all.out, "\n  " + command)) << command;
         const Outcome help = palpate(folder, command + " --help");
@@ -50,8 +49,7 @@ struct Case {
 class WrongWords : public testing::TestWithParam<Case> {};
 
 TEST_P(WrongWords, are_refused_in_one_line_that_names_them) {
-    const ScratchFolder folder;
-    put_trajectory(folder);
+    const MotionFolder folder;
     const auto before = folder.names();
     expect_failure(palpate(folder, GetParam().words), 2, GetParam().reason);
     EXPECT_EQ(folder.names(), before);
@@ -128,16 +126,14 @@ TEST(Usage, a_word_of_any_bytes_and_any_length_is_refused_in_one_line) {
 
 TEST(Usage, a_command_may_follow_the_end_of_the_options) {
     const ScratchFolder folder;
-    const Outcome info = palpate(folder, "-- info synthetic:noise:4x4x4");
-    EXPECT_EQ(info.status, 0) << info.err;
+    const Outcome info = succeeds(folder, "-- info synthetic:noise:4x4x4");
     EXPECT_EQ(info.out, palpate(folder, "info synthetic:noise:4x4x4").out);
 }
 
 class WrongSettings : public testing::TestWithParam<Case> {};
 
 TEST_P(WrongSettings, are_refused_with_the_reason_and_leave_nothing) {
-    const ScratchFolder folder;
-    put_trajectory(folder);
+    const MotionFolder folder;
     const auto before = folder.names();
     const std::string line =
         "replay synthetic:sphere:24x24x24 --trajectory t.csv -o a.csv --path p.csv ";
@@ -174,8 +170,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"--path q.csv", "--path"}, Case{"-o b.csv", "--output"}));
 
 TEST(Usage, options_that_may_be_repeated_leave_the_volume_alone) {
-    const ScratchFolder folder;
-    put_trajectory(folder);
+    const MotionFolder folder;
     for (const std::string options :
          {"--friction 0.5", "--friction 0.5,0.3", "--penetrability ranges --range 100:150",
           "--magnet 1,0.5", "--texture 0.1,2"}) {
@@ -186,8 +181,7 @@ TEST(Usage, options_that_may_be_repeated_leave_the_volume_alone) {
 }
 
 TEST(Usage, no_message_has_the_password_or_the_query_of_an_address) {
-    const ScratchFolder folder;
-    put_trajectory(folder);
+    const MotionFolder folder;
     const std::string address = "http://ann:S3CRET@127.0.0.1:9/v.zarr?a=host;b&sig=TOKEN9";
     const std::string volume = "synthetic:sphere:9x9x9 ";
     for (const std::string& words :
@@ -208,23 +202,19 @@ TEST(Usage, no_message_has_the_password_or_the_query_of_an_address) {
 }
 
 TEST(Usage, warns_of_an_isovalue_outside_the_range_and_goes_on) {
-    const ScratchFolder folder;
-    put_trajectory(folder);
-    const Outcome feel = palpate(
+    const MotionFolder folder;
+    const Outcome feel = succeeds(
         folder, "replay synthetic:sphere:24x24x24 --trajectory t.csv -o a.csv --isovalue 300");
-    EXPECT_EQ(feel.status, 0);
     EXPECT_TRUE(is_one_line(feel.err) && contains(feel.err, "warning: isovalue 300")) << feel.err;
     EXPECT_TRUE(contains(feel.out, "in contact 0 "));
     const Outcome mesh =
-        palpate(folder, "extract synthetic:sphere:24x24x24 -o a.ply --isovalue 300");
-    EXPECT_EQ(mesh.status, 0);
+        succeeds(folder, "extract synthetic:sphere:24x24x24 -o a.ply --isovalue 300");
     EXPECT_TRUE(contains(mesh.err, "warning: isovalue 300")) << mesh.err;
     EXPECT_TRUE(contains(mesh.out, " 0 triangles"));
 }
 
 TEST(Usage, refuses_a_replay_where_all_of_space_is_solid_and_leaves_no_file) {
-    const ScratchFolder folder;
-    put_trajectory(folder);
+    const MotionFolder folder;
     for (const std::string command : {"replay synthetic:sphere:9x9x9 --trajectory t.csv -o a.csv",
                                       "demo synthetic:sphere:9x9x9 --picture 120 -o out"}) {
         const Outcome outcome = palpate(folder, command + " --isovalue -5");

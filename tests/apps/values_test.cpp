@@ -124,8 +124,7 @@ INSTANTIATE_TEST_SUITE_P(
 class Misspelt : public testing::TestWithParam<Line> {};
 
 TEST_P(Misspelt, names_are_answered_with_the_name_that_was_meant) {
-    const ScratchFolder folder;
-    put_trajectory(folder);
+    const MotionFolder folder;
     const Outcome outcome = palpate(folder, GetParam().words);
     EXPECT_NE(outcome.status, 0);
     EXPECT_TRUE(is_one_line(outcome.err)) << outcome.err;

@@ -106,3 +106,20 @@ TEST(Text, comes_whole_through_a_pipe_whose_writer_takes_its_time) {
               "2\n");
     writer.join();
 }
+
+TEST(Text, of_a_message_that_is_too_long_keeps_whole_characters_of_its_beginning_and_end) {
+    for (const std::size_t shift : {0, 1, 2}) {
+        std::string middle;
+        for (int i = 0; i < 1000; ++i) middle += "\u20ac";  // three bytes each
+        const std::string text = std::string(shift, 'a') + middle + std::string(shift, 'z');
+        const std::string line = one_line(text);
+        const std::size_t gap = line.find(" ... ");
+        ASSERT_NE(gap, std::string::npos) << line;
+        EXPECT_EQ((gap - shift) % 3, 0U) << line;
+        EXPECT_EQ((line.size() - shift - (gap + 5)) % 3, 0U) << line;
+        EXPECT_GT(line.size(), 885U);
+        EXPECT_LE(line.size(), 895U);
+    }
+    EXPECT_EQ(one_line("a\n\x7f"), "a  ");
+    EXPECT_GT(one_line(std::string(2000, '\xbf')).size(), 885U);  // not UTF-8 at all
+}

@@ -179,7 +179,7 @@ def test_what_is_there_and_what_cannot_be_is_refused_in_a_line(client, tmp_path)
         convert(client, source, str(out), chunk=16, block=40)
     with pytest.raises(ValueError, match="no compression"):
         convert(client, source, str(out), compression="rar")
-    with pytest.raises(ValueError, match="levels"):
+    with pytest.raises(ValueError, match="there is no level 2"):
         convert(client, source, str(out), level=2)
     with pytest.raises(palpate.InputError, match="does not exist"):
         convert(client, str(tmp_path / "gone.nrrd"), str(out))

@@ -27,8 +27,9 @@ from palpate.evaluate.subjects import Subject, of_text, of_texts, real
 from palpate.evaluate.walls import closed_shell, lines_through
 
 # Quick tables of the C++ programs, 28 November 2026: of layers, tools and scaling the parts without curves and random numbers.
-# The filter is a newer one in the rows of dequantized data.
+# The filter is a newer one in the rows of dequantized data. Of curves, every nth row is kept.
 BEFORE = pathlib.Path(__file__).with_name("evaluate")
+NTH = {"drift": 4, "penetration": 5}
 MODULES = {"drift": drift, "fall-through": fall_through, "fidelity": fidelity, "penetration": penetration,
            "walk-through": walk_through, "notice": notice}
 CLAIMS = {"drift": 4, "fall-through": 9, "performance": 3, "scaling": 7, "fidelity": 9, "stability": 9, "walk-through": 5,
@@ -111,7 +112,7 @@ def test_the_table_is_that_of_the_program_in_cpp_within_tolerances(quick, name):
     parts = {row["part"] for row in old} if name in ("layers", "scaling", "stability", "tools") else None
     table = rows_of(quick[1] / f"{name}.csv", parts)
     assert set(old[0]) <= set(table[0])
-    table = [row for row in table if "(measured)" not in row.get("mode", "")]
+    table = [row for row in table if "(measured)" not in row.get("mode", "")][::NTH.get(name, 1)]
     assert len(table) == len(old)
     for row, was in zip(table, old):
         for column, text in was.items():
@@ -476,18 +477,15 @@ def test_nothing_half_written_is_left_when_interrupted(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_an_interrupt_while_the_folder_is_made_leaves_nothing(tmp_path, monkeypatch):
-    make = pathlib.Path.mkdir
-
-    def interrupted(path, *how, **options):
-        make(path, *how, **options)
-        raise KeyboardInterrupt(signal.SIGINT)
-
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(pathlib.Path, "mkdir", interrupted)
-    with pytest.raises(KeyboardInterrupt):
-        program.evaluate(program.arguments(["walk-through", "--quick", "-o", "found"]), [])
-    assert list(tmp_path.iterdir()) == []
+def test_what_a_killed_run_left_goes_with_the_next(tmp_path):
+    running = subprocess.Popen([os.environ["PALPATE"], "evaluate", "drift", "--output", "found"], cwd=tmp_path)
+    while not list(tmp_path.glob("found/.palpate-*/*")) and running.poll() is None:
+        time.sleep(0.01)
+    running.kill()
+    running.wait()
+    assert list(tmp_path.glob("found/.palpate-*"))
+    evaluate(tmp_path, "walk-through", "--quick", "-q", "-o", "found")
+    assert not list(tmp_path.glob("found/.*"))
 
 
 def test_real_volumes_are_known_by_their_bytes(tmp_path):

@@ -10,7 +10,6 @@
 
 #include "palpate/io/volume_file.hpp"
 #include "palpate/run/labels.hpp"
-#include "palpate/run/replay.hpp"
 #include "run/run_support.hpp"
 #include "support/scratch_folder.hpp"
 
@@ -156,11 +155,7 @@ struct Begun {
 void expect_the_same(const std::filesystem::path& path, const LoadedVolume& loaded) {
     io::RecordingReader reader(path);
     Replay replay(reader, loaded, path.string());
-    while (const auto tick = replay.next()) {
-        const auto differs = difference(tick->recorded, tick->again);
-        ASSERT_FALSE(differs) << differs->part << " in tick " << tick->number << ": "
-                              << differs->recorded << ", again " << differs->again;
-    }
+    test::expect_same_again(replay);
     EXPECT_TRUE(reader.complete());
     EXPECT_EQ(reader.lost(), 0);
 }

@@ -2,7 +2,6 @@
 #include <atomic>
 #include <cmath>
 
-#include "palpate/run/replay.hpp"
 #include "run/run_support.hpp"
 #include "support/scratch_folder.hpp"
 
@@ -152,13 +151,7 @@ TEST(Restart, a_recording_with_a_limit_that_was_lowered_replays) {
     EXPECT_EQ(live.stop_recording(), 600);
     io::RecordingReader reader(folder / "a.csv");
     Replay replay(reader, data->loaded(), "a.csv");
-    int ticks = 0;
-    while (const auto tick = replay.next()) {
-        const auto found = difference(tick->recorded, tick->again);
-        ASSERT_FALSE(found) << "tick " << ticks << ": " << found->part;
-        ++ticks;
-    }
-    EXPECT_EQ(ticks, 600);
+    EXPECT_EQ(test::expect_same_again(replay), 600);
 }
 
 /// Another device, which cannot tell about itself any more after so many calls.

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "palpate/run/recorded_samples.hpp"
+#include "palpate/run/replay.hpp"
 #include "palpate/run/run.hpp"
 #include "support/eventually.hpp"
 #include "support/scripted_device.hpp"
@@ -80,6 +81,17 @@ bool steps_until(Run& live, Condition&& holds) {
 /// So many ticks.
 inline void step(Run& live, int ticks) {
     for (int i = 0; i < ticks; ++i) live.step();
+}
+
+/// Renders a recording again and expects the same ticks; returns how many there are.
+inline std::int64_t expect_same_again(Replay& replay) {
+    while (const auto tick = replay.next()) {
+        const auto differs = difference(tick->recorded, tick->again);
+        EXPECT_FALSE(differs) << "tick " << tick->number << ": " << differs->part << " was "
+                              << differs->recorded << ", is " << differs->again;
+        if (differs) break;
+    }
+    return replay.ticks();
 }
 
 /// A servo that is stepped on `device`; `told` gets the history, if it is not null.

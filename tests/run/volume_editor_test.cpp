@@ -63,10 +63,12 @@ struct Pressing {
         });
     }
 };
+struct Touching : Pressing {
+    Touching() { EXPECT_TRUE(touches()); }
+};
 
 TEST(VolumeEditor, a_brush_that_carves_lets_the_hand_through_and_leaves_what_it_does_not_touch) {
-    Pressing p;
-    ASSERT_TRUE(p.touches());
+    Touching p;
     p.editor.set_brush(HandBrush{.radius = 6, .rate = 30});
     // The way is free once all in front of the hand is gone.
     EXPECT_TRUE(p.until([&] { return (p.scp() - Vec3(-15, 0, 0)).norm() < 1e-9; }));
@@ -132,16 +134,14 @@ TEST(VolumeEditor, one_with_the_tools_shape_lets_the_tool_through_and_cuts_nothi
 }
 
 TEST(VolumeEditor, one_that_adds_pushes_the_hand_out) {
-    Pressing p;
-    ASSERT_TRUE(p.touches());
+    Touching p;
     const double before = p.scp()[0];
     p.editor.set_brush(HandBrush{.kind = BrushKind::add, .radius = 4, .rate = 30});
     EXPECT_TRUE(p.until([&] { return p.scp()[0] < before - 2; }));
 }
 
 TEST(VolumeEditor, one_that_paints_without_a_value_takes_what_adding_leaves) {
-    Pressing p;
-    ASSERT_TRUE(p.touches());
+    Touching p;
     const double before = p.scp()[0];
     p.editor.set_brush(HandBrush{.kind = BrushKind::paint, .radius = 4, .rate = 30});
     EXPECT_TRUE(p.until([&] { return p.scp()[0] < before - 2; }));
@@ -180,8 +180,7 @@ TEST(VolumeEditor, undo_and_redo_go_through_versions_that_the_servo_feels) {
 }
 
 TEST(VolumeEditor, a_stroke_is_one_step_for_undo) {
-    Pressing p;
-    ASSERT_TRUE(p.touches());
+    Touching p;
     p.editor.set_brush(HandBrush{.radius = 3, .rate = 5});
     ASSERT_TRUE(p.until([&] { return p.editor.state().version > 20; }));
     p.editor.set_brush({});
@@ -192,8 +191,7 @@ TEST(VolumeEditor, a_stroke_is_one_step_for_undo) {
 
 TEST(VolumeEditor, a_brush_that_changed_nothing_for_half_a_second_begins_another_step_for_undo) {
     for (const auto& [pause, steps] : {std::pair{400, 1U}, std::pair{600, 2U}}) {
-        Pressing p;
-        ASSERT_TRUE(p.touches());
+        Touching p;
         const HandBrush carving{.radius = 3, .rate = 5};
         p.editor.set_brush(carving);
         ASSERT_TRUE(p.until([&] { return p.editor.state().version > 5; }));
@@ -207,8 +205,7 @@ TEST(VolumeEditor, a_brush_that_changed_nothing_for_half_a_second_begins_another
 }
 
 TEST(VolumeEditor, after_an_undo_the_brush_rests_until_it_is_taken_up_again) {
-    Pressing p;
-    ASSERT_TRUE(p.touches());
+    Touching p;
     p.editor.set_brush(HandBrush{.radius = 3, .rate = 5});
     ASSERT_TRUE(p.until([&] { return p.editor.state().version > 20; }));
     EXPECT_TRUE(p.editor.undo());
@@ -222,8 +219,7 @@ TEST(VolumeEditor, after_an_undo_the_brush_rests_until_it_is_taken_up_again) {
 }
 
 TEST(VolumeEditor, after_a_change_of_the_tool_the_brush_rests_until_it_is_taken_up_again) {
-    Pressing p;
-    ASSERT_TRUE(p.touches());
+    Touching p;
     p.editor.set_brush(HandBrush{.radius = 3, .rate = 5});
     ASSERT_TRUE(p.until([&] { return p.editor.state().version > 20; }));
     EXPECT_TRUE(p.editor.undo());
@@ -239,8 +235,7 @@ TEST(VolumeEditor, after_a_change_of_the_tool_the_brush_rests_until_it_is_taken_
 }
 
 TEST(VolumeEditor, a_brush_that_can_do_nothing_says_why) {
-    Pressing p;
-    ASSERT_TRUE(p.touches());
+    Touching p;
     p.editor.set_brush(HandBrush{.radius = 3, .rate = 5, .value = 200});  // solid: not to carve to
     EXPECT_TRUE(p.until([&] { return !p.editor.state().problem.empty(); }));
     EXPECT_EQ(p.editor.state().version, 0U);

@@ -14,7 +14,9 @@ import json
 import os
 import pickle
 import shutil
+import socket
 import sys
+import threading
 import zlib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Callable, Optional, Union
@@ -23,7 +25,6 @@ import numpy
 
 from . import InputError, Volume, __version__, _palpate, open_store, sharpened, smoothed
 from .command_line import Kind, Parser, one_of, remark, run, say, tell, whole
-from .whole_files import write_whole, writer
 
 if TYPE_CHECKING:  # help needs no Dask
     from distributed import Client
@@ -72,7 +73,8 @@ class _Job:
 
     def image(self, stage):
         """The finished image, or one between two stages of dequantizing, which has one level."""
-        mark = f".part-{writer()}"
+        # A worker that was taken for dead may write the same as another one.
+        mark = f".part-{socket.gethostname()}-{os.getpid()}-{threading.get_ident()}"
         grid = self.store().levels[self.level]
         if stage.startswith("level"):
             return _palpate._GrowingImage(self.folder, self.type, grid, self.ome_version, self.chunk,
@@ -106,7 +108,7 @@ def _cut(volume, around, block):
 
 def _put(path, text):
     path.parent.mkdir(parents=True, exist_ok=True)
-    write_whole(path, lambda file: file.write(text.encode()))
+    _palpate._write_file(path, text)
 
 
 def _get(path):
@@ -141,7 +143,7 @@ def _survey(job, block):
     return False, said
 
 
-def _dequantize(job, block, number, plan, rounds):
+def _dequantize(number, plan, rounds, job, block):
     """A stage of dequantizing: `rounds` of a block, from the stage before."""
     store = job.store()
     reach = sum(map(_palpate._reach_of, rounds)) + _palpate._TERRACE_REACH
@@ -152,7 +154,7 @@ def _dequantize(job, block, number, plan, rounds):
     return _cut(state, around, block)
 
 
-def _finest(job, block, state):
+def _finest(state, job, block):
     """A block of the finest level: of the last stage or of the source, smoothed and sharpened."""
     store = job.store()
     around = _grown(block, job.smooth + job.prefilter, store.levels[job.level].size)
@@ -294,7 +296,7 @@ class _Conversion:
         for number in range(self.first_stage(len(stages)), len(stages)):
             stage = f"state-{number}"
             self.job.image(stage).write_metadata()
-            compute = functools.partial(_stage_of, number, plan, stages[number])
+            compute = functools.partial(_dequantize, number, plan, stages[number])
             self.each(stage, 0, compute)
             if number > 0:
                 self.forget(f"state-{number - 1}")
@@ -320,26 +322,13 @@ class _Conversion:
         state = self.dequantize(rounds) if rounds else None
         image = job.image("level-0")
         image.write_metadata()
-        finest = self.each("level-0", 0, functools.partial(_finest_of, state))
+        finest = self.each("level-0", 0, functools.partial(_finest, state))
         for level in range(1, len(image.levels)):
             self.each(f"level-{level}", level, size=image.levels[level].size)
         ranges = numpy.array([found for _, found in finest])
         found = (float(ranges[:, 0].min()), float(ranges[:, 1].max()))
         image.write_metadata(found)
         return Converted(len(image.levels), self.done, self.kept, found)
-
-
-def _stage_of(number, plan, rounds, job, block):
-    return _dequantize(job, block, number, plan, rounds)
-
-
-def _finest_of(state, job, block):
-    return _finest(job, block, state)
-
-
-def seen(address):
-    """What tells whether a source is the one of the run before: names, sizes and times of its files."""
-    return _palpate._files_at(address)
 
 
 @contextlib.contextmanager
@@ -387,11 +376,10 @@ def convert(client: Union["Client", Callable[[], "Client"]], source: Name, out: 
     if not 0 <= smooth <= 64 or not 0 <= dequantize <= 1000:
         raise ValueError("smooth is 0 to 64 passes, dequantize 0 to 1000 rounds")
     store = open_store(source, **(options or {}))
-    if not 0 <= level < len(store.levels):
-        raise ValueError(f"{source}: has {len(store.levels)} levels, numbered from 0")
     kind = "float32" if dequantize or smooth or prefilter else store.type
     content = _palpate._content_of(store, level)
-    job = _Job(source, pickle.dumps(options or {}), f"{seen(source)} {content}", level, _result(out), _work(out), kind,
+    seen = f"{_palpate._files_at(source)} {content}"
+    job = _Job(source, pickle.dumps(options or {}), seen, level, _result(out), _work(out), kind,
                smooth, prefilter, chunk, compression, ome_version)
     job.image("level-0")  # refuses a wrong format before anything is made
     work = json.dumps([__version__, repr(job), dequantize, block])

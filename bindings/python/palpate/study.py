@@ -3,6 +3,7 @@
 
 import functools
 import hashlib
+import io
 import json
 import os
 import pickle
@@ -16,11 +17,11 @@ from typing import Any, Optional, Union
 import numpy
 from distributed import Client
 
-from . import Field, RenderSetup, Trace, __version__, load, replay
-from .distributed import Name, Progress, check_workers, each_piece, seen
+from . import Field, RenderSetup, Trace, __version__, _palpate, load, replay
+from .distributed import Name, Progress, check_workers, each_piece
 from .errors import OutputError
 from .trace import COLUMNS
-from .whole_files import make_folder, write_whole
+from .whole_files import make_folder
 
 
 @functools.lru_cache(maxsize=1)
@@ -50,7 +51,8 @@ def _write(path, key, trace):
     rest = json.dumps({"key": key, "summary": trace.summary, "layer_names": list(trace.layer_names),
                        "nested_layers": trace.nested_layers, "has_tool": trace.has_tool})
     arrays = {name: getattr(trace, name) for name in COLUMNS}
-    write_whole(path, lambda file: numpy.savez_compressed(file, rest=rest, **arrays))
+    numpy.savez_compressed(packed := io.BytesIO(), rest=rest, **arrays)
+    _palpate._write_file(path, packed.getvalue())
 
 
 def _read(path):
@@ -99,7 +101,7 @@ def study(client: Client, source: Name, isovalue: Union[float, str], time: Any, 
     files = []
     if "://" not in source and not source.startswith(("synthetic:", "live:")):
         source = os.path.abspath(source)
-        files = [(file, seen(file)) for file in _files_of(source)]
+        files = [(file, _palpate._files_at(file)) for file in _files_of(source)]
     made = {name: setup if isinstance(setup, RenderSetup) else RenderSetup(**setup)
             for name, setup in setups.items()}
     motion = [numpy.ascontiguousarray(a, dtype=float) if a is not None else None

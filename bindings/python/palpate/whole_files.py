@@ -1,21 +1,10 @@
-"""Files that appear whole or not at all, also after a power cut. Every output of the Python commands comes from here, unless the
-module in C++ writes it."""
+"""Folders and lines of files that stay after a power cut. Whole files are written by the module in C++."""
 
-import contextlib
 import errno
 import os
-import socket
-import threading
-from collections.abc import Callable
 from pathlib import Path
-from typing import BinaryIO
 
 _NO_SYNC = (errno.EINVAL, errno.ENOTSUP, errno.ENOSYS)  # of file systems without it
-
-
-def writer() -> str:
-    """Who writes: a worker that was taken for dead may write the same as another one."""
-    return f"{socket.gethostname()}-{os.getpid()}-{threading.get_ident()}"
 
 
 def sync(path: Path) -> None:
@@ -37,24 +26,3 @@ def make_folder(path: Path) -> None:
     make_folder(path.parent)
     path.mkdir(exist_ok=True)
     sync(path.parent)
-
-
-def put_in_place(before: Path, path: Path) -> None:
-    """Renames a file that is complete, in place of what was there. It is synced first, so that the name never belongs to a part of
-    it, and then its folder, so that the name stays."""
-    sync(before)
-    before.replace(path)
-    sync(path.parent)
-
-
-def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
-    """A file that write(file) fills, under another name at first. If that fails, nothing of it stays."""
-    before = path.with_name(f"{path.name}.{writer()}")
-    try:
-        with before.open("wb") as file:
-            write(file)
-        put_in_place(before, path)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            before.unlink()
-        raise

@@ -10,12 +10,18 @@
 
 namespace palpate::io {
 
-/// A message as one line of at most 900 characters, whatever text of a file it quotes. Control
-/// characters become blanks. A longer text keeps its beginning and its end.
-inline std::string one_line(std::string text) {
-    constexpr std::size_t beginning = 640, end = 250;
+/// A message as one line of at most 900 bytes, whatever text of a file it quotes. Control
+/// characters become blanks. A longer text keeps so many bytes of its beginning and its end, and no
+/// part of a character of UTF-8.
+inline std::string one_line(std::string text, std::size_t beginning = 640, std::size_t end = 250) {
     if (text.size() > beginning + end) {
-        text.replace(beginning, text.size() - beginning - end, " ... ");
+        const auto continues = [&](std::size_t at) {
+            return (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80;
+        };
+        std::size_t rest = text.size() - end;
+        for (int i = 0; i < 3 && continues(beginning); ++i) --beginning;  // it has at most 4 bytes
+        for (int i = 0; i < 3 && continues(rest); ++i) ++rest;
+        text.replace(beginning, rest - beginning, " ... ");
     }
     for (char& c : text) {
         if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = ' ';

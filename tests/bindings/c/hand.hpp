@@ -114,6 +114,10 @@ class CRun : public testing::Test {
         options.no_real_time = 1;
         return palpate_run_create(data_, &options, &run_);
     }
+    void start(const palpate_own_device& own) {
+        ASSERT_EQ(create(&own), PALPATE_OK) << palpate_last_error();
+        ASSERT_EQ(palpate_run_start(run_), PALPATE_OK) << palpate_last_error();
+    }
     palpate_snapshot now() const {
         PALPATE_STRUCT(palpate_snapshot, snapshot);
         palpate_run_snapshot(run_, &snapshot);

@@ -22,8 +22,7 @@ class COwnDevice : public CRun {
     }
     /// A run that has a force, and a callback that does not return until the gate opens.
     void hang(const palpate_own_device& own, const Hand& hand, Gate& gate) {
-        ASSERT_EQ(create(&own), PALPATE_OK) << palpate_last_error();
-        ASSERT_EQ(palpate_run_start(run_), PALPATE_OK) << palpate_last_error();
+        start(own);
         gate.closed = true;
         EXPECT_TRUE(comes_true([&] { return gate.reached.load(); }));
         EXPECT_GT(hand.force, 0.5);
@@ -87,9 +86,7 @@ TEST_F(COwnDevice, destroying_a_run_leaves_a_callback_that_hangs_alone_until_it_
 }
 
 TEST_F(COwnDevice, a_pose_that_is_not_finite_is_a_fault_without_force_and_says_so) {
-    const palpate_own_device own = device_of(hand_);
-    ASSERT_EQ(create(&own), PALPATE_OK) << palpate_last_error();
-    ASSERT_EQ(palpate_run_start(run_), PALPATE_OK) << palpate_last_error();
+    start(device_of(hand_));
     constexpr double infinity = std::numeric_limits<double>::infinity();
     for (auto Hand::*const which : {&Hand::broken_position, &Hand::broken_orientation}) {
         for (const double number : {double{NAN}, infinity}) {

@@ -54,9 +54,7 @@ TEST_F(CRun, a_button_that_cannot_be_is_refused_by_name) {
 }
 
 TEST_F(CRun, an_own_device_feels_the_ball_within_its_limit_on_a_thread_of_its_own) {
-    const palpate_own_device own = device_of(hand_);
-    ASSERT_EQ(create(&own), PALPATE_OK) << palpate_last_error();
-    ASSERT_EQ(palpate_run_start(run_), PALPATE_OK) << palpate_last_error();
+    start(device_of(hand_));
     EXPECT_TRUE(comes_true([&] { return hand_.force > 1.5; }));
     EXPECT_LE(hand_.largest, 2.0 + 1e-9);
     EXPECT_NE(hand_.thread.load(), std::this_thread::get_id());
@@ -75,8 +73,7 @@ TEST_F(CRun, the_opening_of_an_own_gripper_shows_in_snapshots) {
     for (const bool has : {false, true}) {
         palpate_own_device own = device_of(hand_);
         own.has_gripper = has;
-        ASSERT_EQ(create(&own), PALPATE_OK) << palpate_last_error();
-        ASSERT_EQ(palpate_run_start(run_), PALPATE_OK) << palpate_last_error();
+        start(own);
         EXPECT_TRUE(shows([&](const palpate_snapshot& now) {
             return now.device_status == PALPATE_DEVICE_READY &&
                    (has ? now.opening == 0.25 : std::isnan(now.opening));
@@ -90,8 +87,7 @@ TEST_F(CRun, stopping_returns_when_a_slow_device_has_the_zero) {
     palpate_own_device own = device_of(hand_);
     own.rate = 100;
     hand_.step = -0.25;
-    ASSERT_EQ(create(&own), PALPATE_OK) << palpate_last_error();
-    ASSERT_EQ(palpate_run_start(run_), PALPATE_OK) << palpate_last_error();
+    start(own);
     EXPECT_TRUE(comes_true([&] { return hand_.force > 0.5; }));
     ASSERT_EQ(palpate_run_stop(run_), PALPATE_OK);
     EXPECT_EQ(hand_.force, 0);
@@ -99,9 +95,7 @@ TEST_F(CRun, stopping_returns_when_a_slow_device_has_the_zero) {
 }
 
 TEST_F(CRun, stopping_waits_for_no_callback_that_asks_for_the_run) {
-    const palpate_own_device own = device_of(hand_);
-    ASSERT_EQ(create(&own), PALPATE_OK) << palpate_last_error();
-    ASSERT_EQ(palpate_run_start(run_), PALPATE_OK) << palpate_last_error();
+    start(device_of(hand_));
     EXPECT_TRUE(comes_true([&] { return hand_.force > 0.5; }));
     hand_.asked = run_;
     ASSERT_EQ(palpate_run_stop(run_), PALPATE_OK);
@@ -111,9 +105,7 @@ TEST_F(CRun, stopping_waits_for_no_callback_that_asks_for_the_run) {
 }
 
 TEST_F(CRun, the_progress_of_a_call_does_not_wait_for_the_run_of_that_call) {
-    const palpate_own_device own = device_of(hand_);
-    ASSERT_EQ(create(&own), PALPATE_OK) << palpate_last_error();
-    ASSERT_EQ(palpate_run_start(run_), PALPATE_OK) << palpate_last_error();
+    start(device_of(hand_));
     const auto ask = [](double, void* context) {
         PALPATE_STRUCT(palpate_snapshot, snapshot);
         auto* const run = static_cast<palpate_run*>(context);

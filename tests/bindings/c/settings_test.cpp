@@ -93,11 +93,11 @@ TEST_F(CSettings, an_error_is_one_line_of_whole_characters) {
         for (int i = 0; i < 1000; ++i) name += "\u20ac";  // three bytes each
         EXPECT_EQ(palpate_renderer_set(renderer_, name.c_str(), 1), PALPATE_INVALID);
         const std::string cut = palpate_last_error();
-        const std::size_t first = cut.find("\u20ac"), last = cut.rfind("\u20ac");
-        ASSERT_NE(last, std::string::npos) << cut;
-        EXPECT_GT(cut.size(), 1000U);
-        EXPECT_EQ(last + 3, cut.size()) << cut.substr(last);
-        EXPECT_EQ((last - first) % 3, 0U);
+        const std::size_t first = cut.find("\u20ac"), gap = cut.find(" ... ");
+        ASSERT_NE(gap, std::string::npos) << cut;
+        EXPECT_EQ((gap - first) % 3, 0U) << cut;
+        EXPECT_GT(cut.size(), 800U);
+        EXPECT_NE(cut.find("limits."), std::string::npos) << cut;  // the end: what to use instead
     }
 }
 

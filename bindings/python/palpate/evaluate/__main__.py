@@ -5,14 +5,11 @@ import importlib.util
 import json
 import os
 import shlex
-import shutil
 import sys
-import uuid
 from pathlib import Path
 
 from ..command_line import Kind, Parser, Stop, one_of, remark, say, tell, whole
 from ..command_line import run as command
-from ..whole_files import make_folder, put_in_place
 
 EXPERIMENTS = ("drift", "fall-through", "performance", "scaling", "fidelity", "stability", "walk-through",
                "penetration", "layers", "tools", "streaming", "notice", "recorded", "needle")  # in the order of docs/evaluation.md
@@ -84,25 +81,6 @@ def warn_of_no_effect(chosen, names):
         PARSER.warn_of_no_effect(["data"], "--quick uses no real volume")
 
 
-@contextlib.contextmanager
-def unfinished(path):
-    """A folder within that of the results, which nothing is left of at the end. Names are known before they are made, so that an interrupt
-    while they are made leaves nothing, either."""
-    is_new, part = not path.exists(), path / f".palpate-{uuid.uuid4().hex}"
-    try:
-        try:
-            make_folder(path)
-            part.mkdir(mode=0o700)
-        except OSError as error:
-            raise Stop(BAD_OUTPUT, f"{path}: {error.strerror}: choose another folder with --output") from error
-        yield part
-    finally:
-        shutil.rmtree(part, ignore_errors=True)
-        if is_new and path.exists() and not any(path.iterdir()):
-            path.rmdir()
-
-
-
 def options_of(chosen, name):
     from palpate.evaluate.experiment import Options
     from palpate.evaluate.subjects import of_texts
@@ -147,33 +125,29 @@ def shown(made):
 
 
 def evaluate(chosen, words):
+    from palpate import _palpate
     from palpate.evaluate import report
     from palpate.evaluate.experiment import DoesNotApply
     names = names_of(chosen)
     options_of(chosen, chosen.experiment)  # refuses volumes before any work
     warn_of_no_effect(chosen, names)
     path, reports = Path(chosen.output), []
-
-    def complete():
-        for file in sorted(part.iterdir()):
-            put_in_place(file, path / file.name)
-
-    with unfinished(path) as part:
+    with contextlib.closing(_palpate._ResultFolder(path)) as results:
         for name in names:
             try:
-                reports.append(run(name, chosen, part, words))
+                reports.append(run(name, chosen, results.part, words))
             except DoesNotApply as error:
                 if len(names) == 1:
                     raise
                 tell(f"note: {name} is left out: {error}")
                 continue
-            complete()
+            results.complete()
             if not (chosen.quiet or chosen.json):
                 say(shown(reports[-1]), last=len(names) == 1)
         if chosen.experiment == "all":
-            if not report.write_pages(reports, path, part):
+            if not report.write_pages(reports, path, results.part):
                 tell("note: without report.pdf: it needs WeasyPrint (apt install weasyprint)")
-            complete()
+            results.complete()
     if chosen.json:
         say(json.dumps([{"experiment": r.name, "paragraph": " ".join(r.result.paragraphs), "claims": [
             {"statement": c.statement, "holds": c.held, "measured": c.measured} for c in r.result.claims],

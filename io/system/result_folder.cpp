@@ -1,5 +1,5 @@
 // Makes results in a hidden folder and renames them when complete.
-#include "apps/palpate/result_folder.hpp"
+#include "io/system/result_folder.hpp"
 
 #include <unistd.h>
 
@@ -12,9 +12,9 @@
 #include "io/system/leftovers.hpp"
 #include "io/system/removal.hpp"
 #include "io/system/system.hpp"
-#include "palpate/io/output.hpp"
+#include "palpate/io/error.hpp"
 
-namespace palpate::app {
+namespace palpate::io {
 
 namespace fs = std::filesystem;
 
@@ -23,47 +23,48 @@ ResultFolder::ResultFolder(const fs::path& folder, std::vector<std::string> name
     std::error_code error;
     is_new_ = fs::create_directories(folder_, error);
     if (folder_.empty() || error || !fs::is_directory(folder_)) {
-        throw io::OutputError("'" + folder.string() +
-                              "': this folder could not be made: choose another with --output");
+        throw OutputError("'" + folder.string() + "': this folder could not be made" +
+                          (error ? " (" + error.message() + ")" : "") +
+                          ": choose another with --output");
     }
-    io::remove_leftovers(folder_);
-    part_ = io::make_temporary_folder(folder_, error);
+    remove_leftovers(folder_);
+    part_ = make_temporary_folder(folder_, error);
     if (error) {
         if (is_new_) fs::remove(folder_, error);
-        throw io::OutputError(folder.string() + ": nothing can be written in this folder (" +
-                              error.message() + "): choose another with --output");
+        throw OutputError(folder.string() + ": nothing can be written in this folder (" +
+                          error.message() + "): choose another with --output");
     }
-    lock_ = io::lock_temporary(part_);
-    std::ofstream(part_ / io::temporary_marker) << io::temporary_marker_text;
+    lock_ = lock_temporary(part_);
+    std::ofstream(part_ / temporary_marker) << temporary_marker_text;
 }
 
 ResultFolder::~ResultFolder() {
     std::error_code ignored;
-    io::remove_tree(part_);
+    remove_tree(part_);
     if (is_new_ && !complete_) fs::remove(folder_, ignored);
     if (lock_ >= 0) ::close(lock_);
 }
 
 void ResultFolder::complete() {
-    if (lock_ >= 0 && !io::synchronise_all(lock_)) {
-        throw io::OutputError(folder_.string() + ": " + io::reason(errno) + ": check the disk");
+    if (lock_ >= 0 && !synchronise_all(lock_)) {
+        throw OutputError(folder_.string() + ": " + reason(errno) + ": check the disk");
     }
     for (const auto& entry : fs::directory_iterator(part_)) {
         const std::string name = entry.path().filename().string();
-        if (name == io::temporary_marker) continue;
-        if (std::ranges::find(names_, name) == names_.end()) {
+        if (name == temporary_marker) continue;
+        if (!names_.empty() && std::ranges::find(names_, name) == names_.end()) {
             throw std::logic_error(name + " is not among the names of the results");
         }
         std::error_code error;
         const fs::path target = folder_ / name;
         fs::rename(entry.path(), target, error);
         if (error) {
-            throw io::OutputError(target.string() + ": could not be put in place: " +
-                                  error.message() + ": remove it, or choose another --output");
+            throw OutputError(target.string() + ": could not be put in place: " + error.message() +
+                              ": remove it, or choose another --output");
         }
     }
-    io::synchronise_folder(folder_);
+    synchronise_folder(folder_);
     complete_ = true;
 }
 
-}  // namespace palpate::app
+}  // namespace palpate::io

@@ -1,20 +1,20 @@
-// A folder of results that appear together, when they are complete.
+// A folder of results that appear together, when they are complete. Private to io/ and programs.
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
-namespace palpate::app {
+namespace palpate::io {
 
 /// The results are made in a hidden folder inside the one asked for and appear there together: an
 /// interrupted command leaves nothing that could be taken for results. What a killed one has left
 /// in this folder goes when the next one begins there.
 class ResultFolder {
   public:
-    /// Makes both folders. `names` are those of all results that may be made. Throws
-    /// io::OutputError if nothing can be written there.
-    ResultFolder(const std::filesystem::path& folder, std::vector<std::string> names);
+    /// Makes both folders. `names` are those of all results that may be made; empty: any. Throws
+    /// OutputError if nothing can be written there.
+    explicit ResultFolder(const std::filesystem::path& folder, std::vector<std::string> names = {});
     /// What was not completed goes.
     ~ResultFolder();
     ResultFolder(const ResultFolder&) = delete;
@@ -22,8 +22,8 @@ class ResultFolder {
 
     /// Where to make the results.
     const std::filesystem::path& part() const { return part_; }
-    /// Puts what was made in place; more may be made and completed after. Throws io::OutputError,
-    /// and std::logic_error for a result that is not among the names: whether it is an input was
+    /// Puts what was made in place; more may be made and completed after. Throws OutputError, and
+    /// std::logic_error for a result that is not among the names: whether it is an input was
     /// not checked.
     void complete();
 
@@ -35,4 +35,4 @@ class ResultFolder {
     int lock_ = -1;  // on part_, see io/system/leftovers.hpp
 };
 
-}  // namespace palpate::app
+}  // namespace palpate::io
