@@ -448,7 +448,8 @@ void LayersControls::ask_save() {
     QString name = QString::fromStdString(all().name).simplified().toLower();
     name.replace(QRegularExpression("[^a-z0-9]+"), "-");
     const QString path = ask_save_name(messages_.window(), tr("Save the layers"),
-                                       (name.isEmpty() ? tr("layers") : name) + ".json", "json");
+                                       (name.isEmpty() ? tr("layers") : name) + ".json", "json",
+                                       tr("Layers (*.json)"));
     if (!path.isEmpty()) save(path);
 }
 

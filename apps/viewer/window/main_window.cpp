@@ -136,8 +136,7 @@ void MainWindow::build() {
 
 void MainWindow::connect_parts() {
     connect(&timer_, &QTimer::timeout, this, &MainWindow::tick);
-    connect(&messages_, &Messages::done, this,
-            [this](const QString& what) { statusBar()->showMessage(what, message_ms); });
+    connect(&messages_, &Messages::done, this, &MainWindow::show_note);
     connect(&views_->scene(), &Scene::problem, this,
             [this](const QString& what) { messages_.show_problem(what); });
     connect(&probe_, &ProbeController::lifted, &panel_->brush_controls(), &BrushControls::rest);
@@ -165,6 +164,15 @@ void MainWindow::connect_parts() {
     connect(&content_, &Content::hand_changed, this, refresh);
     connect(&content_, &Content::device_changed, this, refresh);
     connect(&recordings_, &RecordingController::changed, this, refresh);
+    connect(&panel_->brush_controls(), &BrushControls::history_changed, this, refresh);
+}
+
+/// Notes that come together are shown together. The newest comes first, as a narrow window cuts the
+/// end off.
+void MainWindow::show_note(const QString& what) {
+    if (notes_.isEmpty()) QTimer::singleShot(0, this, [this] { notes_.clear(); });
+    notes_.prepend(what);
+    statusBar()->showMessage(notes_.join("; "), message_ms);
 }
 
 /// It stands in for the views while nothing is open.
