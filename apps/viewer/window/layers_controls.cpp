@@ -14,7 +14,7 @@
 #include "apps/viewer/model/overlay.hpp"
 #include "apps/viewer/model/session_file.hpp"
 #include "apps/viewer/model/transfer.hpp"
-#include "apps/viewer/panel/names.hpp"
+#include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/panel/stroke_plot.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"

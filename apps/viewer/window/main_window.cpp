@@ -25,16 +25,14 @@
 
 #include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/model/measurement.hpp"
-#include "apps/viewer/model/ruler.hpp"
+#include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/layout.hpp"
-#include "apps/viewer/panel/names.hpp"
 #include "apps/viewer/panel/timeline.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/window/brush_controls.hpp"
 #include "apps/viewer/window/device_controls.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
-#include "apps/viewer/window/hand_switch.hpp"
 #include "apps/viewer/window/hints.hpp"
 #include "apps/viewer/window/layers_controls.hpp"
 #include "apps/viewer/window/menus.hpp"
@@ -140,12 +138,10 @@ void MainWindow::connect_parts() {
     connect(&views_->scene(), &Scene::problem, this,
             [this](const QString& what) { messages_.show_problem(what); });
     connect(&probe_, &ProbeController::lifted, &panel_->brush_controls(), &BrushControls::rest);
-    connect(&content_, &Content::closed, this, &MainWindow::show_title);
-    connect(&content_, &Content::run_started, this, &MainWindow::show_title);
-    connect(&content_, &Content::playback_started, this, &MainWindow::show_title);
-    connect(&content_, &Content::renamed, this, &MainWindow::show_title);
-    connect(&content_, &Content::run_started, this, &MainWindow::show_grid);
-    connect(&content_, &Content::playback_started, this, &MainWindow::show_grid);
+    for (const auto changed :
+         {&Content::closed, &Content::run_started, &Content::playback_started, &Content::renamed}) {
+        connect(&content_, changed, this, &MainWindow::show_title);
+    }
     connect(&panel_->overlay_controls(), &OverlayControls::overlay_changed, this,
             &MainWindow::show_missing);
     connect(views_, &Views::missing_asked, this, [this] {
@@ -158,11 +154,10 @@ void MainWindow::connect_parts() {
     connect(&content_, &Content::closed, this,
             [this] { QTimer::singleShot(give_back_ms, this, [] { malloc_trim(0); }); });
     const auto refresh = [this] { actions_.refresh(); };
-    connect(&content_, &Content::closed, this, refresh);
-    connect(&content_, &Content::run_changed, this, refresh);
-    connect(&content_, &Content::playback_started, this, refresh);
-    connect(&content_, &Content::hand_changed, this, refresh);
-    connect(&content_, &Content::device_changed, this, refresh);
+    for (const auto changed : {&Content::closed, &Content::run_changed, &Content::playback_started,
+                               &Content::hand_changed, &Content::device_changed}) {
+        connect(&content_, changed, this, refresh);
+    }
     connect(&recordings_, &RecordingController::changed, this, refresh);
     connect(&panel_->brush_controls(), &BrushControls::history_changed, this, refresh);
 }
@@ -178,6 +173,7 @@ void MainWindow::show_note(const QString& what) {
 /// It stands in for the views while nothing is open.
 void MainWindow::connect_welcome() {
     const auto show_views = [this] {
+        show_grid();
         welcome_->hide();
         views_->show();
     };

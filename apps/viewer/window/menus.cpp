@@ -12,12 +12,12 @@
 #include <map>
 #include <utility>
 
-#include "apps/viewer/panel/icons.hpp"
+#include "apps/viewer/panel/colours.hpp"
 #include "apps/viewer/panel/timeline.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/window/brush_controls.hpp"
+#include "apps/viewer/window/device_controls.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
-#include "apps/viewer/window/hand_switch.hpp"
 #include "apps/viewer/window/look_controls.hpp"
 #include "apps/viewer/window/main_window.hpp"
 #include "apps/viewer/window/messages.hpp"

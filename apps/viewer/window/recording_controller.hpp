@@ -7,7 +7,7 @@
 #include <QString>
 
 #include "apps/viewer/model/run_closer.hpp"
-#include "apps/viewer/panel/timeline_view.hpp"
+#include "apps/viewer/panel/timeline.hpp"
 #include "apps/viewer/window/desk.hpp"
 #include "apps/viewer/window/messages.hpp"
 

@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 #include <limits>
 
-#include "apps/viewer/scene/render_thread.hpp"
+#include "apps/viewer/scene/render_request.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "support/fields.hpp"
 #include "viewer/scene/shown_scene.hpp"

@@ -4,7 +4,7 @@
 #include <QLabel>
 #include <QTextBrowser>
 
-#include "apps/viewer/model/ruler.hpp"
+#include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/panel/layout.hpp"
 #include "viewer/window/window_fixture.hpp"
 
