@@ -155,6 +155,7 @@ DeviceControls::DeviceControls(const Desk& desk)
       workspace_(named(new QLabel, "device_workspace",
                        tr("The box that the device reaches [mm of the hand], and its most force"))),
       problem_(new Note("device_problem", Note::Kind::warning)) {
+    search_.setParent(nullptr);  // nobody waits for it
     options_->setAccessibleName(tr("Options of the device"));
     picker_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     picker_->setMinimumContentsLength(12);

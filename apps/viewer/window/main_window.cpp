@@ -106,13 +106,7 @@ void MainWindow::build() {
     layout->setStretch(1, 1);
     views_->hide();
     layout->setSpacing(0);
-    for (BackgroundTask* task :
-         {&files_.reader(), &files_.loader(), &panel_->overlay_controls().loader(), &saver_.task(),
-          &panel_->layers_controls().reader(), &panel_->tool_controls().reader(),
-          &panel_->tool_controls().maker(), &recordings_.preparing(), &recordings_.ending(),
-          &panel_->device_controls().connector().task()}) {
-        layout->addWidget(make_progress_strip(*task));
-    }
+    for (BackgroundTask* task : messages_.tasks()) layout->addWidget(make_progress_strip(*task));
     setCentralWidget(centre);
     dock_ = named(new QDockWidget(tr("Feel and look")), "dock");
     dock_->setWidget(panel_);
@@ -353,9 +347,8 @@ void MainWindow::rest_or_wake(const HandSnapshots& now) {
 }
 
 bool MainWindow::settled() const {
-    return !files_.loading() && !saver_.saving() && !probe_.travelling() && recordings_.settled() &&
-           panel_->overlay_controls().settled() && !panel_->layers_controls().reader().busy() &&
-           !panel_->tool_controls().reader().busy() && !panel_->tool_controls().maker().busy() &&
+    return std::ranges::none_of(messages_.tasks(), &BackgroundTask::busy) && !probe_.travelling() &&
+           panel_->overlay_controls().settled() &&
            (!content_.volume() || (views_->scene().settled() && details_.settled()));
 }
 

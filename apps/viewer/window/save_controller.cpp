@@ -163,10 +163,6 @@ void SaveController::write_surface(const QString& path, const std::shared_ptr<Su
     });
 }
 
-void SaveController::settle_edits(const std::function<void()>& action) {
-    if (may_lose_edits(action)) action();
-}
-
 bool SaveController::may_lose_edits(const std::function<void()>& once_saved) {
     return go_on(tr("The volume was edited, and not saved since. Save it?"), {}, once_saved);
 }
