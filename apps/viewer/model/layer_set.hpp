@@ -1,5 +1,5 @@
-// Layers as they are shown and edited: what is seen of them, what they are called, and changes that
-// keep their order. Plain values.
+// Layers as they are shown and edited: what is seen of them, what they are called, changes that
+// keep their order, and the force along a stroke through them. Plain values.
 #pragma once
 
 #include <memory>
@@ -9,6 +9,7 @@
 
 #include "apps/viewer/model/look.hpp"
 #include "palpate/renderer.hpp"
+#include "palpate/servo.hpp"
 
 namespace palpate::viewer {
 
@@ -103,6 +104,31 @@ class LayersHistory {
     static constexpr std::size_t most = 200;
     std::size_t most_labels_;
     std::vector<SharedLayers> past_, future_;
+};
+
+class Stroke {
+  public:
+    struct Point {
+        double depth = 0;  ///< [mm, physical] of the hand along the stroke, from its first contact
+        double force = 0;  ///< [N]
+        int layer = -1;    ///< that is touched; -1: none
+    };
+    static constexpr std::size_t most_points = 20'000;
+    static constexpr double pause = 2;  ///< [s] outside of all layers, after which another begins
+
+    /// Takes a snapshot of a session with layers. True if the points have changed. The time of a
+    /// recording that is played may jump: then the stroke begins anew.
+    bool add(const Snapshot& now);
+    void clear() { *this = {}; }
+    const std::vector<Point>& points() const { return points_; }
+
+  private:
+    std::vector<Point> points_;
+    Vec3 origin_ = Vec3::Zero();  // [mm, physical] the first contact
+    Vec3 into_ = Vec3::Zero();    // unit, physical axes, into the solid
+    double time_ = 0;             // [s] of the last tick
+    double inside_at_ = 0;        // [s] when layers were felt last
+    bool begun_ = false;
 };
 
 }  // namespace palpate::viewer

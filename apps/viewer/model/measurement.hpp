@@ -1,4 +1,4 @@
-// Lengths and angles between points of a volume.
+// Lengths and angles between points of a volume, and the unit and decimals for its positions.
 #pragma once
 
 #include <string>
@@ -39,5 +39,17 @@ std::size_t points_of(Measure kind);
 /// "12.3 mm", "45.0°". Empty before all points are there, and for an angle without a side.
 std::string text_of(const Measurement& measurement, LengthUnit unit = LengthUnit::automatic,
                     const std::string& voxel = "voxel");
+
+/// With enough decimals for a fifth of the smallest spacing, and in micrometres if that is below
+/// 10 µm, or in metres from 100 mm on.
+struct Ruler {
+    const char* unit = "mm";
+    double per_mm = 1;
+    int decimals = 1;
+
+    /// The number without its unit, with at least so many decimals.
+    std::string number(double mm, int least_decimals = 1) const;
+};
+Ruler ruler_of(const Geometry& geometry);
 
 }  // namespace palpate::viewer

@@ -1,4 +1,4 @@
-// Colours of the model in Qt, and a button to choose one.
+// Colours of the model in Qt, a button to choose one, and icons of tool buttons.
 #pragma once
 
 #include <QColor>
@@ -49,5 +49,28 @@ class ColourButton : public QPushButton {
   private:
     Colour colour_;
 };
+
+enum class Shape {
+    back,
+    brush,
+    cut,
+    eye,
+    forces,
+    forward,
+    freeze,
+    layout,
+    measure,
+    open,
+    pause,
+    play,
+    record,
+    redo,
+    touch,
+    undo,
+    whole
+};
+
+/// An icon at any size, in the colour that text on buttons has whenever it is painted.
+QIcon icon_of(Shape shape);
 
 }  // namespace palpate::viewer

@@ -8,7 +8,6 @@
 #include <variant>
 
 #include "apps/viewer/panel/form.hpp"
-#include "apps/viewer/panel/sections.hpp"
 #include "palpate/settings.hpp"
 
 namespace palpate::viewer {

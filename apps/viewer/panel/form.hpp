@@ -1,10 +1,12 @@
 // Controls that are bound to values: the words of a control, its value and the effect of a change
-// stand in one place. A form keeps no values of its own.
+// stand in one place. A form keeps no values of its own. Also names in the person's language, and
+// the sections of the panel that only show and change the session in effect.
 #pragma once
 
 #include <QCheckBox>
 #include <QComboBox>
 #include <QPushButton>
+#include <QString>
 #include <QWidget>
 
 #include <functional>
@@ -12,12 +14,15 @@
 #include <utility>
 #include <vector>
 
+#include "apps/viewer/model/layer_set.hpp"
 #include "apps/viewer/panel/colours.hpp"
 #include "apps/viewer/panel/effect.hpp"
 #include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/layout.hpp"
 
 namespace palpate::viewer {
+
+class LevelChart;
 
 struct Words {
     QString name;         ///< of the object
@@ -132,5 +137,29 @@ class EffectForm : public Form {
 
     Effect& effect_;
 };
+
+/// Of transfer functions, colour maps, and causes of slow ticks; others as they are. Files keep the
+/// names themselves.
+QString shown_name(const std::string& name);
+
+QString shown_set(const std::string& name);
+
+/// What felt_words() says, in the person's language.
+QString felt_text(const LayersFelt& felt, const SharedLayers& layers);
+
+/// Adds a choice that is shown so, with the name itself as its data.
+void add_choice(QComboBox& box, const std::string& name);
+
+/// Switches for forces, freeze and clutch, the force against its limit, and the contact.
+Form* session_section(Effect& effect);
+
+/// How contact feels: a row for each number in the tables of force and friction. The sliders end at
+/// what the device can render.
+Form* force_section(Effect& effect);
+
+/// Whether surfaces give way, past which threshold, and the ranges of levels that are felt. These
+/// are bands on the chart, too, which the section does not own. Object names: penetrability,
+/// threshold, add_range, and of the ranges, from N = 1, range_N_low, range_N_high, range_N_remove.
+Form* penetrability_section(Effect& effect, LevelChart& chart);
 
 }  // namespace palpate::viewer

@@ -13,7 +13,6 @@
 
 #include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/panel/level_chart.hpp"
-#include "apps/viewer/panel/sections.hpp"
 
 namespace palpate::viewer {
 namespace {

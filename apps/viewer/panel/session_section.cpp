@@ -14,9 +14,8 @@
 
 #include "apps/options/words.hpp"
 #include "apps/viewer/model/hands.hpp"
-#include "apps/viewer/model/ruler.hpp"
+#include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/panel/form.hpp"
-#include "apps/viewer/panel/sections.hpp"
 
 namespace palpate::viewer {
 namespace {

@@ -4,7 +4,6 @@
 #include <QWidget>
 
 #include "apps/viewer/model/layer_set.hpp"
-#include "apps/viewer/model/stroke.hpp"
 
 namespace palpate::viewer {
 

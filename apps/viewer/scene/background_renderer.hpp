@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "apps/viewer/model/detail_choice.hpp"
+#include "apps/viewer/model/detail.hpp"
 #include "apps/viewer/scene/render_request.hpp"
 #include "apps/viewer/scene/surface_maker.hpp"
 

@@ -80,7 +80,10 @@ class Painter {
 using MakePainter =
     std::function<std::unique_ptr<Painter>(Painter::Priority priority, Painter::Results results)>;
 
-/// A RenderThread: what the program uses.
+/// Draws on a thread with an OpenGL context of its own: what the program uses. To be called on the
+/// window's thread; results come on the other one.
 std::unique_ptr<Painter> make_render_thread(Painter::Priority priority, Painter::Results results);
+/// True if OpenGL's renderer of this name (GL_RENDERER) is the machine's graphics hardware.
+bool is_hardware(const std::string& renderer_name);
 
 }  // namespace palpate::viewer

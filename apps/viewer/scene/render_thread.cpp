@@ -1,6 +1,7 @@
-// Draws render requests with VTK on a thread, in an OpenGL context of its own: keeps the actors in
-// step with the request, draws them and reads the image back.
-#include "apps/viewer/scene/render_thread.hpp"
+// Draws render requests with VTK on a thread, in an OpenGL context of its own, so that the window
+// never waits for an image. Keeps the actors in step with the request, draws them and reads the
+// image back.
+#include "apps/viewer/scene/render_request.hpp"
 
 #include <QVTKOpenGLNativeWidget.h>
 #include <vtkActor.h>
@@ -16,15 +17,19 @@
 #include <QOffscreenSurface>
 #include <QOpenGLContext>
 #include <QOpenGLFunctions>
+#include <QThread>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <exception>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -32,7 +37,6 @@
 #include "apps/viewer/scene/actors.hpp"
 #include "apps/viewer/scene/cut.hpp"
 #include "apps/viewer/scene/layer_prop.hpp"
-#include "apps/viewer/scene/render_request.hpp"
 #include "apps/viewer/scene/threads.hpp"
 #include "apps/viewer/scene/view_space.hpp"
 #include "pictures/vtk/material.hpp"
@@ -369,76 +373,96 @@ bool is_hardware(const std::string& name) {
     return !name.empty();
 }
 
-RenderThread::RenderThread(Priority priority, Results results)
-    : priority_(priority),
-      results_(std::move(results)),
-      surface_(std::make_unique<QOffscreenSurface>()),
-      context_(std::make_unique<QOpenGLContext>()) {
-    QSurfaceFormat format = QVTKOpenGLNativeWidget::defaultFormat();
-    format.setSamples(0);
-    surface_->setFormat(format);
-    surface_->create();
-    context_->setFormat(format);
-    context_->create();
-    thread_.reset(QThread::create([this] { run(); }));
-    context_->moveToThread(thread_.get());
-    thread_->start();
-}
+namespace {
 
-RenderThread::~RenderThread() {
-    give_up();
-    {
-        const std::lock_guard lock(mutex_);
-        stopping_ = true;
+class RenderThread final : public Painter {
+  public:
+    RenderThread(Priority priority, Results results)
+        : priority_(priority),
+          results_(std::move(results)),
+          surface_(std::make_unique<QOffscreenSurface>()),
+          context_(std::make_unique<QOpenGLContext>()) {
+        QSurfaceFormat format = QVTKOpenGLNativeWidget::defaultFormat();
+        format.setSamples(0);
+        surface_->setFormat(format);
+        surface_->create();
+        context_->setFormat(format);
+        context_->create();
+        thread_.reset(QThread::create([this] { run(); }));
+        context_->moveToThread(thread_.get());
+        thread_->start();
     }
-    changed_.notify_all();
-    thread_->wait();
-}
 
-void RenderThread::draw(RenderRequest request) {
-    {
-        const std::lock_guard lock(mutex_);
-        next_ = std::move(request);
-    }
-    changed_.notify_all();
-}
-
-void RenderThread::give_up() {
-    const std::lock_guard lock(mutex_);
-    next_.reset();
-    give_up_ = true;
-}
-
-void RenderThread::run() {
-    if (priority_ == Priority::low) lower_thread_priority();
-    if (!context_->makeCurrent(surface_.get())) {
-        results_.failed("the 3-D view gets no OpenGL context");
-        context_.reset();
-        return;
-    }
-    try {
-        const GLubyte* const name = context_->functions()->glGetString(GL_RENDERER);
-        OffscreenRenderer renderer(give_up_,
-                                   name && is_hardware(reinterpret_cast<const char*>(name)));
-        for (;;) {
-            RenderRequest request;
-            {
-                std::unique_lock lock(mutex_);
-                changed_.wait(lock, [this] { return stopping_ || next_; });
-                if (stopping_) break;
-                request = std::move(*next_);
-                next_.reset();
-                give_up_ = false;
-            }
-            std::optional<RenderedImage> image = renderer.draw(request);
-            if (image) results_.drawn(std::move(*image));
+    /// Cancels the present request and waits for the thread.
+    ~RenderThread() override {
+        give_up();
+        {
+            const std::lock_guard lock(mutex_);
+            stopping_ = true;
         }
-    } catch (const std::exception& error) {
-        results_.failed(error.what());
+        changed_.notify_all();
+        thread_->wait();
     }
-    context_->doneCurrent();
-    context_.reset();
-}
+
+    void draw(RenderRequest request) override {
+        {
+            const std::lock_guard lock(mutex_);
+            next_ = std::move(request);
+        }
+        changed_.notify_all();
+    }
+
+    void give_up() override {
+        const std::lock_guard lock(mutex_);
+        next_.reset();
+        give_up_ = true;
+    }
+
+  private:
+    void run() {
+        if (priority_ == Priority::low) lower_thread_priority();
+        if (!context_->makeCurrent(surface_.get())) {
+            results_.failed("the 3-D view gets no OpenGL context");
+            context_.reset();
+            return;
+        }
+        try {
+            const GLubyte* const name = context_->functions()->glGetString(GL_RENDERER);
+            OffscreenRenderer renderer(give_up_,
+                                       name && is_hardware(reinterpret_cast<const char*>(name)));
+            for (;;) {
+                RenderRequest request;
+                {
+                    std::unique_lock lock(mutex_);
+                    changed_.wait(lock, [this] { return stopping_ || next_; });
+                    if (stopping_) break;
+                    request = std::move(*next_);
+                    next_.reset();
+                    give_up_ = false;
+                }
+                std::optional<RenderedImage> image = renderer.draw(request);
+                if (image) results_.drawn(std::move(*image));
+            }
+        } catch (const std::exception& error) {
+            results_.failed(error.what());
+        }
+        context_->doneCurrent();
+        context_.reset();
+    }
+
+    Priority priority_;
+    Results results_;
+    std::unique_ptr<QOffscreenSurface> surface_;
+    std::unique_ptr<QOpenGLContext> context_;
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::optional<RenderRequest> next_;
+    bool stopping_ = false;
+    std::atomic<bool> give_up_{false};
+    std::unique_ptr<QThread> thread_;
+};
+
+}  // namespace
 
 std::unique_ptr<Painter> make_render_thread(Painter::Priority priority, Painter::Results results) {
     return std::make_unique<RenderThread>(priority, std::move(results));

@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-#include "apps/viewer/model/detail_choice.hpp"
+#include "apps/viewer/model/detail.hpp"
 #include "apps/viewer/model/shown.hpp"
 #include "apps/viewer/scene/cut.hpp"
 #include "apps/viewer/scene/navigation.hpp"

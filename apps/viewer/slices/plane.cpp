@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/viewer/model/ruler.hpp"
+#include "apps/viewer/model/measurement.hpp"
 
 namespace palpate::viewer {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "apps/viewer/slices/slice_content.hpp"
+#include "apps/viewer/slices/slice_pane.hpp"
 
 namespace palpate::viewer {
 

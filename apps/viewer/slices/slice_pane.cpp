@@ -13,8 +13,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "apps/viewer/model/ruler.hpp"
-#include "apps/viewer/slices/slice_content.hpp"
+#include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/slices/slice_marks.hpp"
 #include "apps/viewer/slices/slice_picture.hpp"
 #include "palpate/lattice.hpp"
@@ -54,12 +53,6 @@ SlicePane::SlicePane(int axis, QWidget* parent) : QWidget(parent), axis_(axis), 
     setCursor(Qt::CrossCursor);
     later_.setSingleShot(true);
     connect(&later_, &QTimer::timeout, this, qOverload<>(&QWidget::update));
-}
-
-SlicePane::~SlicePane() = default;
-
-const SlicePlane& SlicePane::plane() const {
-    return content_->plane;
 }
 
 void SlicePane::set_field(const Field& field, double isovalue,

@@ -2,6 +2,8 @@
 // and proxy. Mouse and keys work as in ITK-SNAP and 3D Slicer.
 #pragma once
 
+#include <QElapsedTimer>
+#include <QImage>
 #include <QTimer>
 #include <QWidget>
 
@@ -9,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-#include "apps/viewer/model/detail_choice.hpp"
+#include "apps/viewer/model/detail.hpp"
 #include "apps/viewer/model/shown.hpp"
 #include "apps/viewer/slices/plane.hpp"
 #include "apps/viewer/slices/slice_picture.hpp"
@@ -29,7 +31,6 @@ class SlicePane : public QWidget {
   public:
     /// `axis`: 0, 1 or 2, the grid axis that the slices lie across. Empty at first.
     explicit SlicePane(int axis, QWidget* parent = nullptr);
-    ~SlicePane() override;
 
     /// Another volume: the crosshair goes to its centre, the whole slice is seen, the grey levels
     /// are the usual ones. For the same samples with another solid side or background all of these
@@ -92,14 +93,29 @@ class SlicePane : public QWidget {
     void leaveEvent(QEvent* event) override;
 
   private:
-    struct Content;
+    /// The data of a volume that the pane holds.
+    struct Content {
+        SlicePlane plane;  ///< that slices are counted in
+        SliceSamples samples;
+        double layer = 0;                           ///< of the grid, that the picture shows
+        std::shared_ptr<const DetailField> finer;   ///< of a part; null: none
+        std::optional<SliceSamples> finer_samples;  ///< its own
+        QImage picture;                             ///< grey levels and contour; null: to be made
+        SliceStyle style;                           ///< of the picture
+        std::optional<Field> newer;  ///< not yet in samples: another version of the same grid
+        QElapsedTimer made;          ///< since then
+        qint64 took_ms = 0;
+
+        Content(const Field& field, const SlicePlane& counted)
+            : plane(counted), samples(field, counted) {}
+    };
     enum class Drag { none, crosshair, probe, window, move };
     struct Aim {
         QPointF at;  // [samples]
         double layer = 0;
     };
 
-    const SlicePlane& plane() const;
+    const SlicePlane& plane() const { return content_->plane; }
     SliceMap map() const;
     double margin() const;
     double layer() const;

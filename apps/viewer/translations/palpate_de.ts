@@ -918,6 +918,10 @@ Der Schieber endet, wo Gerät und Regelkreis sie nicht mehr stabil wiedergeben k
         <source>Felt through the devices %1</source>
         <translation>Gefühlt mit den Geräten %1</translation>
     </message>
+    <message>
+        <source>Sessions (*.json)</source>
+        <translation>Sitzungen (*.json)</translation>
+    </message>
 </context>
 <context>
     <name>palpate::viewer::ForceControls</name>
@@ -1702,6 +1706,10 @@ Strg-Rad vergrößert, Umschalt-Rad verschiebt, Strg+0 zeigt wieder alles.</tran
         <source>For CT in Hounsfield units, which these data do not look like</source>
         <translation>Für CT in Hounsfield-Einheiten, wonach diese Daten nicht aussehen</translation>
     </message>
+    <message>
+        <source>Layers (*.json)</source>
+        <translation>Schichten (*.json)</translation>
+    </message>
 </context>
 <context>
     <name>palpate::viewer::LevelChart</name>
@@ -2401,6 +2409,14 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <source>Sides of the body are not known: say how the volume lies, and its spacing</source>
         <translation>Die Seiten des Körpers sind nicht bekannt: angeben, wie das Volumen liegt, und seinen Abstand</translation>
     </message>
+    <message>
+        <source>Pictures (*.png)</source>
+        <translation>Bilder (*.png)</translation>
+    </message>
+    <message>
+        <source>Recordings (*.csv)</source>
+        <translation>Aufzeichnungen (*.csv)</translation>
+    </message>
 </context>
 <context>
     <name>palpate::viewer::MeasureController</name>
@@ -3001,6 +3017,10 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
     <message>
         <source>The volume is still being saved</source>
         <translation>Das Volumen wird noch gespeichert</translation>
+    </message>
+    <message>
+        <source>Zarr images (*.zarr)</source>
+        <translation>Zarr-Bilder (*.zarr)</translation>
     </message>
 </context>
 <context>

@@ -275,13 +275,18 @@ void BrushControls::step(bool (run::VolumeEditor::*take)(const OnProgress&),
         run::VolumeEditor* editor = content_.editor();
         if (editor && !(editor->*take)({})) messages_.show_done(if_none);
     });
+    observe();
+}
+
+run::EditState BrushControls::history() const {
+    const run::VolumeEditor* editor = content_.editor();
+    return editor ? editor->state() : run::EditState{};
 }
 
 void BrushControls::observe() {
-    const run::VolumeEditor* editor = content_.editor();
-    if (!editor) return;
-    const run::EditState state = editor->state();
-    set_history(state.undo_steps, state.redo_steps, state.changed);
+    if (!content_.editor()) return;
+    const run::EditState state = history();
+    show_history(state);
     const QString problem = QString::fromStdString(state.problem);
     if (problem != std::exchange(problem_, problem) && !problem.isEmpty()) {
         messages_.show_done(problem);
@@ -337,11 +342,11 @@ void BrushControls::clear() {
     values_ = {};
     choice_.value.reset();
     choice_.on = false;
-    set_history(0, 0, false);
+    show_history({});
     set_reason({});
 }
 
-void BrushControls::set_history(std::size_t undo_steps, std::size_t redo_steps, bool changed) {
+void BrushControls::show_history(const run::EditState& state) {
     const auto show = [](QPushButton* button, const QString& what, std::size_t steps,
                          const QString& tip) {
         button->setText(steps_text(what, steps));
@@ -349,11 +354,15 @@ void BrushControls::set_history(std::size_t undo_steps, std::size_t redo_steps, 
         button->setToolTip(QString("%1: %2").arg(tip, in_words(steps)));
         button->setAccessibleName(QString("%1, %2").arg(what, in_words(steps)));
     };
-    show(undo_, tr("Undo"), undo_steps, tr("Takes the last edit back"));
-    show(redo_, tr("Redo"), redo_steps, tr("Makes the edit again that was taken back"));
-    state_->setText(changed                        ? tr("There are edits that are not saved")
-                    : undo_steps + redo_steps == 0 ? tr("Nothing was edited")
-                                                   : tr("Nothing is left to save"));
+    const auto possible = [this] { return std::pair(undo_->isEnabled(), redo_->isEnabled()); };
+    const auto before = possible();
+    show(undo_, tr("Undo"), state.undo_steps, tr("Takes the last edit back"));
+    show(redo_, tr("Redo"), state.redo_steps, tr("Makes the edit again that was taken back"));
+    const bool none = state.undo_steps + state.redo_steps == 0;
+    state_->setText(state.changed ? tr("There are edits that are not saved")
+                    : none        ? tr("Nothing was edited")
+                                  : tr("Nothing is left to save"));
+    if (possible() != before) Q_EMIT history_changed();
 }
 
 void BrushControls::set_reason(const QString& why) {

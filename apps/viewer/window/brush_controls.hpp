@@ -38,11 +38,15 @@ class BrushControls : public EffectForm, protected Desk {
     void rest(bool on);
     void undo();
     void redo();
+    /// The edits of the live run. Without an editor there are none.
+    run::EditState history() const;
     /// Shows what can be undone; about thirty times a second.
     void observe();
 
   Q_SIGNALS:
     void save_wanted();
+    /// Other edits can be undone or made again.
+    void history_changed();
 
   private:
     QWidget* make_kinds();
@@ -56,7 +60,7 @@ class BrushControls : public EffectForm, protected Desk {
     void use();
     /// Whether a tool is in the hand, whose shape the brush can take. Without one it is a ball.
     void set_tool(bool there);
-    void set_history(std::size_t undo_steps, std::size_t redo_steps, bool changed);
+    void show_history(const run::EditState& state);
     /// One sentence why nothing can be edited, which also shows the switch off. Empty: it can.
     void set_reason(const QString& why);
     void step(bool (run::VolumeEditor::*take)(const OnProgress&), const QString& if_none);

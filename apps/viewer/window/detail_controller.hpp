@@ -11,8 +11,7 @@
 #include <memory>
 #include <optional>
 
-#include "apps/viewer/model/detail_choice.hpp"
-#include "apps/viewer/model/detail_maker.hpp"
+#include "apps/viewer/model/detail.hpp"
 #include "apps/viewer/scene/navigation.hpp"
 #include "apps/viewer/window/desk.hpp"
 #include "palpate/servo.hpp"

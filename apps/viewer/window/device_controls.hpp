@@ -1,15 +1,19 @@
 // The page of the device: finds devices and changes to another one, adds and removes hands, shows
-// the state and problems, sets buttons and scale, and shows how the servo loop performs.
+// the state and problems, sets buttons and scale, and shows how the servo loop performs. Also the
+// switch that says which hand's settings the panel shows.
 #pragma once
 
 #include <QElapsedTimer>
 #include <QLabel>
 #include <QLineEdit>
+#include <QPushButton>
+#include <QWidget>
 
 #include <cstdint>
 #include <optional>
 #include <vector>
 
+#include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/panel/effect.hpp"
 #include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/window/connector.hpp"
@@ -81,6 +85,25 @@ class DeviceControls : public EffectForm, protected Desk {
     DeviceStatus status_ = DeviceStatus::starting;
     std::optional<DeviceStatus> told_;              // with the problem, by observe()
     std::vector<devices::DeviceFinding> findings_;  // by row
+};
+
+class BrushControls;
+
+/// Hidden while there is one hand.
+class HandSwitch : public QWidget, protected Desk {
+    Q_OBJECT
+
+  public:
+    HandSwitch(const Desk& desk, BrushControls& brush);
+
+    void choose(int hand);
+    void choose_next();
+    /// What is wrong with any hand's device; a few times a second.
+    void show_hands();
+
+  private:
+    BrushControls& brush_;
+    PerHand<QPushButton*> buttons_;
 };
 
 }  // namespace palpate::viewer

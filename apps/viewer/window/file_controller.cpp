@@ -307,14 +307,15 @@ void FileController::tell_choices(const Opened& opened) {
 }
 
 void FileController::dequantize(bool on) {
-    saver_.settle_edits([this, on] {
+    const auto read_again = [this, on] {
         if (!content_.live()) return;
         run::Source source = content_.source();
         const auto& terraces = content_.volume()->terraces;
         const int rounds = terraces ? terraces->rounds() : filters::DequantizeOptions{}.rounds;
         source.dequantize = on ? rounds : 0;
         feel_again(source);
-    });
+    };
+    if (saver_.may_lose_edits(read_again)) read_again();
 }
 
 /// Another reading of the same volume, in the same view.

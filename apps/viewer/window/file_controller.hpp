@@ -70,8 +70,7 @@ class FileController : public Controller {
     /// again with these: it is felt as before, but seen anew.
     void ask_grid();
 
-    /// Of sessions, layers and heads of recordings; and of volumes.
-    BackgroundTask& reader() { return reader_; }
+    /// Of volumes.
     BackgroundTask& loader() { return loader_; }
     bool loading() const;
 
@@ -113,7 +112,7 @@ class FileController : public Controller {
     DisplayController& display_;
     MeasureController& measuring_;
     SaveController& saver_;
-    BackgroundTask reader_, loader_;
+    BackgroundTask reader_, loader_;  // of sessions, layers and heads of recordings; of volumes
 };
 
 }  // namespace palpate::viewer

@@ -75,9 +75,9 @@ QString ask_open_folder(QWidget* window) {
 }
 
 QString ask_save_name(QWidget* window, const QString& title, const QString& name,
-                      const QString& suffix, bool replaces, const QString& filter) {
-    const QString shown = filter.isEmpty() ? QString("*.%1 (*.%1)").arg(suffix) : filter;
-    QFileDialog dialog(window, title, last_folder(), shown);
+                      const QString& suffix, const QString& filter, bool replaces) {
+    const bool only = filter.endsWith("(*." + suffix + ")");
+    QFileDialog dialog(window, title, last_folder(), filter);
     dialog.setAcceptMode(QFileDialog::AcceptSave);
     dialog.setDefaultSuffix(suffix);
     dialog.setOption(QFileDialog::DontConfirmOverwrite, !replaces);
@@ -85,8 +85,7 @@ QString ask_save_name(QWidget* window, const QString& title, const QString& name
     while (dialog.exec() == QDialog::Accepted) {
         keep("folder", dialog.directory().absolutePath());
         const QString path = dialog.selectedFiles().value(0);
-        const bool whole = !filter.isEmpty() || path.endsWith("." + suffix, Qt::CaseInsensitive);
-        if (whole) return path;
+        if (!only || path.endsWith("." + suffix, Qt::CaseInsensitive)) return path;
         // The dialog adds none to "day.2", which would not open again as what it is.
         const QString longer = path + "." + suffix;
         if (!replaces || !QFileInfo::exists(longer) || may_replace(window, longer)) return longer;

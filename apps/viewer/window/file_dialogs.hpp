@@ -16,11 +16,11 @@ QString ask_open_anything(QWidget* window);
 QString ask_open_overlay_name(QWidget* window);
 QString ask_open_folder(QWidget* window);
 QString ask_open_raw_name(QWidget* window);
-/// `replaces`: the dialog asks before an existing file is replaced; false for files that are never
-/// replaced. With a `filter`, the dialog shows these files, and names without an extension get
-/// `suffix`. Without it, the dialog shows files with the suffix, and all other names get it.
+/// `filter`: the files that the dialog shows. Names without an extension get `suffix`, and if the
+/// filter has no other one, so do all names that do not end with it. `replaces`: the dialog asks
+/// before an existing file is replaced; false for files that are never replaced.
 QString ask_save_name(QWidget* window, const QString& title, const QString& name,
-                      const QString& suffix, bool replaces = true, const QString& filter = {});
+                      const QString& suffix, const QString& filter, bool replaces = true);
 
 /// The dialogs begin in the folder of this file.
 void remember_folder(const QString& path);

@@ -7,10 +7,10 @@
 #include <algorithm>
 
 #include "apps/viewer/model/hands.hpp"
-#include "apps/viewer/model/ruler.hpp"
+#include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/panel/colours.hpp"
+#include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/panel/layout.hpp"
-#include "apps/viewer/panel/names.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/recording_controller.hpp"

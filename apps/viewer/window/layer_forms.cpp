@@ -11,7 +11,7 @@
 #include <limits>
 #include <utility>
 
-#include "apps/viewer/panel/names.hpp"
+#include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/window/layers_controls.hpp"
 
 namespace palpate::viewer {

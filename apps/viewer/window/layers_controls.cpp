@@ -14,7 +14,7 @@
 #include "apps/viewer/model/overlay.hpp"
 #include "apps/viewer/model/session_file.hpp"
 #include "apps/viewer/model/transfer.hpp"
-#include "apps/viewer/panel/names.hpp"
+#include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/panel/stroke_plot.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
@@ -448,7 +448,8 @@ void LayersControls::ask_save() {
     QString name = QString::fromStdString(all().name).simplified().toLower();
     name.replace(QRegularExpression("[^a-z0-9]+"), "-");
     const QString path = ask_save_name(messages_.window(), tr("Save the layers"),
-                                       (name.isEmpty() ? tr("layers") : name) + ".json", "json");
+                                       (name.isEmpty() ? tr("layers") : name) + ".json", "json",
+                                       tr("Layers (*.json)"));
     if (!path.isEmpty()) save(path);
 }
 

@@ -91,7 +91,6 @@ class LayersControls : public EffectForm, protected Desk {
     /// Each hand of the session feels its layers that lack_labels() once their label volume has
     /// been read; a name that is relative counts from the working folder, then from that of `file`.
     void restore(const SessionFile& session, const QString& file);
-    BackgroundTask& reader() { return reader_; }
     void set_choices(std::vector<LayersChoice> choices);
     const SharedLayers& layers() const { return effect_.settings().layers; }
     /// They were changed, and are in no file.

@@ -8,7 +8,7 @@
 #include <iterator>
 
 #include "apps/viewer/model/transfer.hpp"
-#include "apps/viewer/panel/names.hpp"
+#include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/scene/cut.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/window/content.hpp"

@@ -25,16 +25,14 @@
 
 #include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/model/measurement.hpp"
-#include "apps/viewer/model/ruler.hpp"
+#include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/layout.hpp"
-#include "apps/viewer/panel/names.hpp"
 #include "apps/viewer/panel/timeline.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/window/brush_controls.hpp"
 #include "apps/viewer/window/device_controls.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
-#include "apps/viewer/window/hand_switch.hpp"
 #include "apps/viewer/window/hints.hpp"
 #include "apps/viewer/window/layers_controls.hpp"
 #include "apps/viewer/window/menus.hpp"
@@ -108,13 +106,7 @@ void MainWindow::build() {
     layout->setStretch(1, 1);
     views_->hide();
     layout->setSpacing(0);
-    for (BackgroundTask* task :
-         {&files_.reader(), &files_.loader(), &panel_->overlay_controls().loader(), &saver_.task(),
-          &panel_->layers_controls().reader(), &panel_->tool_controls().reader(),
-          &panel_->tool_controls().maker(), &recordings_.preparing(), &recordings_.ending(),
-          &panel_->device_controls().connector().task()}) {
-        layout->addWidget(make_progress_strip(*task));
-    }
+    for (BackgroundTask* task : messages_.tasks()) layout->addWidget(make_progress_strip(*task));
     setCentralWidget(centre);
     dock_ = named(new QDockWidget(tr("Feel and look")), "dock");
     dock_->setWidget(panel_);
@@ -136,17 +128,14 @@ void MainWindow::build() {
 
 void MainWindow::connect_parts() {
     connect(&timer_, &QTimer::timeout, this, &MainWindow::tick);
-    connect(&messages_, &Messages::done, this,
-            [this](const QString& what) { statusBar()->showMessage(what, message_ms); });
+    connect(&messages_, &Messages::done, this, &MainWindow::show_note);
     connect(&views_->scene(), &Scene::problem, this,
             [this](const QString& what) { messages_.show_problem(what); });
     connect(&probe_, &ProbeController::lifted, &panel_->brush_controls(), &BrushControls::rest);
-    connect(&content_, &Content::closed, this, &MainWindow::show_title);
-    connect(&content_, &Content::run_started, this, &MainWindow::show_title);
-    connect(&content_, &Content::playback_started, this, &MainWindow::show_title);
-    connect(&content_, &Content::renamed, this, &MainWindow::show_title);
-    connect(&content_, &Content::run_started, this, &MainWindow::show_grid);
-    connect(&content_, &Content::playback_started, this, &MainWindow::show_grid);
+    for (const auto changed :
+         {&Content::closed, &Content::run_started, &Content::playback_started, &Content::renamed}) {
+        connect(&content_, changed, this, &MainWindow::show_title);
+    }
     connect(&panel_->overlay_controls(), &OverlayControls::overlay_changed, this,
             &MainWindow::show_missing);
     connect(views_, &Views::missing_asked, this, [this] {
@@ -159,17 +148,26 @@ void MainWindow::connect_parts() {
     connect(&content_, &Content::closed, this,
             [this] { QTimer::singleShot(give_back_ms, this, [] { malloc_trim(0); }); });
     const auto refresh = [this] { actions_.refresh(); };
-    connect(&content_, &Content::closed, this, refresh);
-    connect(&content_, &Content::run_changed, this, refresh);
-    connect(&content_, &Content::playback_started, this, refresh);
-    connect(&content_, &Content::hand_changed, this, refresh);
-    connect(&content_, &Content::device_changed, this, refresh);
+    for (const auto changed : {&Content::closed, &Content::run_changed, &Content::playback_started,
+                               &Content::hand_changed, &Content::device_changed}) {
+        connect(&content_, changed, this, refresh);
+    }
     connect(&recordings_, &RecordingController::changed, this, refresh);
+    connect(&panel_->brush_controls(), &BrushControls::history_changed, this, refresh);
+}
+
+/// Notes that come together are shown together. The newest comes first, as a narrow window cuts the
+/// end off.
+void MainWindow::show_note(const QString& what) {
+    if (notes_.isEmpty()) QTimer::singleShot(0, this, [this] { notes_.clear(); });
+    notes_.prepend(what);
+    statusBar()->showMessage(notes_.join("; "), message_ms);
 }
 
 /// It stands in for the views while nothing is open.
 void MainWindow::connect_welcome() {
     const auto show_views = [this] {
+        show_grid();
         welcome_->hide();
         views_->show();
     };
@@ -349,9 +347,8 @@ void MainWindow::rest_or_wake(const HandSnapshots& now) {
 }
 
 bool MainWindow::settled() const {
-    return !files_.loading() && !saver_.saving() && !probe_.travelling() && recordings_.settled() &&
-           panel_->overlay_controls().settled() && !panel_->layers_controls().reader().busy() &&
-           !panel_->tool_controls().reader().busy() && !panel_->tool_controls().maker().busy() &&
+    return std::ranges::none_of(messages_.tasks(), &BackgroundTask::busy) && !probe_.travelling() &&
+           panel_->overlay_controls().settled() &&
            (!content_.volume() || (views_->scene().settled() && details_.settled()));
 }
 

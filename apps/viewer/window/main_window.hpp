@@ -88,6 +88,7 @@ class MainWindow : public QMainWindow {
     void build();
     void connect_parts();
     void connect_welcome();
+    void show_note(const QString& what);
     void show_title();
     void show_grid();
     bool lacks_grid() const;
@@ -136,7 +137,7 @@ class MainWindow : public QMainWindow {
     const ActionRow::Condition if_live_ = [this] { return live() != nullptr; };
     QTimer timer_;
     bool keeps_layout_ = true;
-    QStringList usual_folds_;
+    QStringList usual_folds_, notes_;
     int rounds_ = 0, at_rest_ = 0;
     HandSnapshots seen_;  // the last ones that differed from those before
 };

@@ -12,12 +12,12 @@
 #include <map>
 #include <utility>
 
-#include "apps/viewer/panel/icons.hpp"
+#include "apps/viewer/panel/colours.hpp"
 #include "apps/viewer/panel/timeline.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/window/brush_controls.hpp"
+#include "apps/viewer/window/device_controls.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
-#include "apps/viewer/window/hand_switch.hpp"
 #include "apps/viewer/window/look_controls.hpp"
 #include "apps/viewer/window/main_window.hpp"
 #include "apps/viewer/window/messages.hpp"
@@ -124,7 +124,8 @@ void MainWindow::make_file_menu() {
     };
     const auto picture = [this](bool whole_window) {
         const QString path =
-            ask_save_name(this, tr("Save a picture"), "palpate-" + time_stamp() + ".png", "png");
+            ask_save_name(this, tr("Save a picture"), "palpate-" + time_stamp() + ".png", "png",
+                          tr("Pictures (*.png)"));
         if (!path.isEmpty()) save_picture(path, whole_window);
     };
     actions_.add(menu,
@@ -154,8 +155,9 @@ void MainWindow::make_file_menu() {
 void MainWindow::record(bool on) {
     actions_.refresh();  // the switch shows the present state until a name is chosen
     if (!on) return recordings_.stop();
-    const QString path = ask_save_name(this, tr("Record the session"),
-                                       "session-" + time_stamp() + ".csv", "csv", false);
+    const QString path =
+        ask_save_name(this, tr("Record the session"), "session-" + time_stamp() + ".csv", "csv",
+                      tr("Recordings (*.csv)"), false);
     if (!path.isEmpty()) recordings_.start(path);
 }
 
@@ -207,40 +209,40 @@ void MainWindow::make_data_menu() {
     QMenu* menu = menuBar()->addMenu(tr("&Data"));
     BrushControls& brush = panel_->brush_controls();
     OverlayControls& overlays = panel_->overlay_controls();
-    const auto editable = [this] { return content_.editor() != nullptr; };
     const auto playable = [this] { return content_.player() || playback(); };
     const auto is_store = [this] {
         return live() && std::holds_alternative<run::StoreSource>(content_.source().from);
     };
     actions_.add(
-        menu,
-        {{"brush_action", tr("&Brush at the probe"), "B",
-          [this, &brush](bool) {
-              brush.toggle();
-              actions_.refresh();
-          },
-          if_live_, [&brush] { return brush.choice().on; }},
-         {"undo_action", tr("&Undo"), QKeySequence::Undo, [&brush] { brush.undo(); }, editable},
-         {"redo_action", tr("&Redo"), "Ctrl+Shift+Z", [&brush] { brush.redo(); }, editable},
-         {"save_volume", tr("&Save the volume…"), "Ctrl+Shift+S", [this] { saver_.ask_save(); },
-          if_live_},
-         {"save_surface", tr("Save the surface as a &mesh…"), "",
-          [this] { saver_.ask_save_surface(); }, if_live_},
-         {"open_overlay_action", tr("Open an o&verlay: labels or another image…"), "",
-          [&overlays] { overlays.ask_open(); }, if_open_},
-         {"close_overlay_action", tr("&Close the overlay"), "",
-          [&overlays] { overlays.close_overlay(); },
-          [&overlays] { return overlays.overlay() != nullptr; }},
-         {"choose_level", tr("&Level, channel and time…"), "",
-          [this] { files_.settle_work([this] { files_.ask_level(); }); }, is_store},
-         {"choose_grid", tr("Or&ientation and spacing…"), "",
-          [this] { files_.settle_work([this] { files_.ask_grid(); }); },
-          [this] { return live() && content_.from_file(); }},
-         separator,
-         {"play_sequence", tr("&Play the sequence, or pause it"), "K",
-          [this] { timeline_->toggle_playing(); }, playable},
-         {"frame_back", tr("A frame bac&k"), ",", [this] { timeline_->step(-1); }, playable},
-         {"frame_on", tr("A frame &on"), ".", [this] { timeline_->step(1); }, playable}});
+        menu, {{"brush_action", tr("&Brush at the probe"), "B",
+                [this, &brush](bool) {
+                    brush.toggle();
+                    actions_.refresh();
+                },
+                if_live_, [&brush] { return brush.choice().on; }},
+               {"undo_action", tr("&Undo"), QKeySequence::Undo, [&brush] { brush.undo(); },
+                [&brush] { return brush.history().undo_steps > 0; }},
+               {"redo_action", tr("&Redo"), "Ctrl+Shift+Z", [&brush] { brush.redo(); },
+                [&brush] { return brush.history().redo_steps > 0; }},
+               {"save_volume", tr("&Save the volume…"), "Ctrl+Shift+S",
+                [this] { saver_.ask_save(); }, if_live_},
+               {"save_surface", tr("Save the surface as a &mesh…"), "",
+                [this] { saver_.ask_save_surface(); }, if_live_},
+               {"open_overlay_action", tr("Open an o&verlay: labels or another image…"), "",
+                [&overlays] { overlays.ask_open(); }, if_open_},
+               {"close_overlay_action", tr("&Close the overlay"), "",
+                [&overlays] { overlays.close_overlay(); },
+                [&overlays] { return overlays.overlay() != nullptr; }},
+               {"choose_level", tr("&Level, channel and time…"), "",
+                [this] { files_.settle_work([this] { files_.ask_level(); }); }, is_store},
+               {"choose_grid", tr("Or&ientation and spacing…"), "",
+                [this] { files_.settle_work([this] { files_.ask_grid(); }); },
+                [this] { return live() && content_.from_file(); }},
+               separator,
+               {"play_sequence", tr("&Play the sequence, or pause it"), "K",
+                [this] { timeline_->toggle_playing(); }, playable},
+               {"frame_back", tr("A frame bac&k"), ",", [this] { timeline_->step(-1); }, playable},
+               {"frame_on", tr("A frame &on"), ".", [this] { timeline_->step(1); }, playable}});
 }
 
 void MainWindow::make_measure_and_cut_menus(QMenu& view) {

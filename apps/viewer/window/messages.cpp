@@ -75,6 +75,10 @@ void Messages::show_problem(const QString& what, int status) {
     box->open();  // does not block the live run
 }
 
+QList<BackgroundTask*> Messages::tasks() const {
+    return findChildren<BackgroundTask*>(QString(), Qt::FindDirectChildrenOnly);
+}
+
 void BackgroundTask::start(const QString& label, Worker::Task task, std::function<void()> then) {
     abandon();
     then_ = std::move(then);

@@ -18,6 +18,8 @@ class QWidget;
 
 namespace palpate::viewer {
 
+class BackgroundTask;
+
 class Messages : public QObject {
     Q_OBJECT
 
@@ -48,6 +50,8 @@ class Messages : public QObject {
                   const std::function<void()>& save);
     /// What dialogs belong to.
     QWidget* window() const { return window_; }
+    /// Those whose progress is shown: all but those that were taken out, by setParent(nullptr).
+    QList<BackgroundTask*> tasks() const;
 
   Q_SIGNALS:
     void done(const QString& what);
@@ -66,7 +70,7 @@ class BackgroundTask : public QObject {
     Q_OBJECT
 
   public:
-    explicit BackgroundTask(Messages& messages) : messages_(messages) {}
+    explicit BackgroundTask(Messages& messages) : QObject(&messages), messages_(messages) {}
 
     /// Abandons the previous task. `then` runs on the window's thread once `task` is done, not if
     /// it was cancelled. What either throws is shown.

@@ -14,10 +14,9 @@
 #include <utility>
 #include <vector>
 
-#include "apps/viewer/panel/sections.hpp"
+#include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/window/brush_controls.hpp"
 #include "apps/viewer/window/device_controls.hpp"
-#include "apps/viewer/window/hand_switch.hpp"
 #include "apps/viewer/window/isovalue_controls.hpp"
 #include "apps/viewer/window/layers_controls.hpp"
 #include "apps/viewer/window/look_controls.hpp"

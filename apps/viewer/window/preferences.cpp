@@ -11,7 +11,7 @@
 #include <QPalette>
 #include <QSettings>
 
-#include <algorithm>
+#include <cstddef>
 #include <utility>
 
 #include "apps/viewer/panel/form.hpp"
@@ -72,16 +72,11 @@ namespace {
 constexpr const char* language_key = "preferences/language";
 constexpr const char* resources = ":/translations";
 
-QLocale locale_of(Language language) {
-    switch (language) {
-        case Language::system:
-            break;
-        case Language::english:
-            return {QLocale::English};
-        case Language::german:
-            return {QLocale::German};
-    }
-    return QLocale::system();
+/// In the order of Language.
+constexpr const char* language_codes[] = {"", "en", "de"};
+
+const char* code_of(Language language) {
+    return language_codes[static_cast<std::size_t>(language)];
 }
 
 }  // namespace
@@ -89,7 +84,9 @@ QLocale locale_of(Language language) {
 Translation::Translation(Language language) {
     use_resources();
     // The first of the person's languages that there is; English has a file, too, for its plurals.
-    if (!own_.load(locale_of(language), "palpate", "_", resources)) {
+    const QLocale locale =
+        language == Language::system ? QLocale::system() : QLocale(code_of(language));
+    if (!own_.load(locale, "palpate", "_", resources)) {
         (void)own_.load("palpate_en", resources);
     }
     QCoreApplication::installTranslator(&own_);
@@ -106,6 +103,13 @@ namespace {
 constexpr double least_wheel = 2, most_wheel = 100;
 constexpr double least_millions = 0.1, most_millions = 50;
 
+/// Numbers that are none of the choices up to `last` stand for the first one.
+template <typename Choice>
+Choice choice_in(const QSettings& settings, const char* name, Choice last) {
+    const int choice = settings.value(name).toInt();
+    return choice >= 0 && choice <= static_cast<int>(last) ? static_cast<Choice>(choice) : Choice{};
+}
+
 double number_in(const QSettings& settings, const char* name, double usual, double low,
                  double high) {
     bool is_number = false;
@@ -119,18 +123,14 @@ Preferences saved_preferences() {
     const QSettings settings;
     const Preferences usual;
     Preferences found;
-    const int last = settings.value("appearance", 0).toInt();
-    found.appearance = last == 1   ? Appearance::light
-                       : last == 2 ? Appearance::dark
-                                   : Appearance::system;
+    found.appearance = choice_in(settings, "appearance", Appearance::dark);
     const QString code = settings.value(language_key).toString();
-    found.language = code == "en"   ? Language::english
-                     : code == "de" ? Language::german
-                                    : Language::system;
+    for (const Language language : {Language::english, Language::german}) {
+        if (code == code_of(language)) found.language = language;
+    }
     found.wheel_px =
         number_in(settings, "preferences/wheel_px", usual.wheel_px, least_wheel, most_wheel);
-    found.unit = static_cast<LengthUnit>(
-        std::clamp(settings.value("preferences/unit", 0).toInt(), 0, int(LengthUnit::inches)));
+    found.unit = choice_in(settings, "preferences/unit", LengthUnit::inches);
     found.surface_millions = number_in(settings, "preferences/surface_millions",
                                        usual.surface_millions, least_millions, most_millions);
     return found;
@@ -141,7 +141,7 @@ void save_preferences(const Preferences& preferences) {
     QSettings settings;
     settings.remove(language_key);
     if (language != Language::system) {
-        settings.setValue(language_key, locale_of(language).name().section('_', 0, 0));
+        settings.setValue(language_key, code_of(language));
     }
     settings.setValue("preferences/wheel_px", preferences.wheel_px);
     settings.setValue("preferences/unit", static_cast<int>(preferences.unit));

@@ -7,7 +7,7 @@
 #include <QString>
 
 #include "apps/viewer/model/run_closer.hpp"
-#include "apps/viewer/panel/timeline_view.hpp"
+#include "apps/viewer/panel/timeline.hpp"
 #include "apps/viewer/window/desk.hpp"
 #include "apps/viewer/window/messages.hpp"
 
@@ -31,8 +31,6 @@ class RecordingController : public Controller {
     /// At once. What is left is written in the background, for as long as the reader of a pipe
     /// takes or until it is cancelled.
     void stop();
-    BackgroundTask& preparing() { return preparing_; }
-    BackgroundTask& ending() { return ending_; }
     bool settled() const { return !preparing_.busy() && !ending_.busy(); }
     /// The program ends: a reader has half a second for a recording that was stopped.
     void finish();

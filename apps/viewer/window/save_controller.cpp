@@ -76,8 +76,8 @@ void SaveController::ask_save(std::function<void()> then) {
     if (base.endsWith("." + suffix, Qt::CaseInsensitive)) base.chop(suffix.size() + 1);
     if (!content_.saved_elsewhere()) base += "-edited";
     const QString path =
-        ask_save_name(messages_.window(), tr("Save the volume"), base + "." + suffix, suffix, true,
-                      streamed ? QString() : saved_volumes());
+        ask_save_name(messages_.window(), tr("Save the volume"), base + "." + suffix, suffix,
+                      streamed ? tr("Zarr images (*.zarr)") : saved_volumes());
     if (!path.isEmpty()) save(path, std::move(then));
 }
 
@@ -116,7 +116,7 @@ void SaveController::ask_save_surface() {
     const QString base = kind > 0 ? name.fileName().chopped(kind) : name.completeBaseName();
     const QString path = ask_save_name(
         messages_.window(), tr("Save the surface (.ply, .stl, .obj or .vtp)"),
-        base.section(':', -1) + ".ply", "ply", true, tr("Meshes (*.ply *.stl *.obj *.vtp)"));
+        base.section(':', -1) + ".ply", "ply", tr("Meshes (*.ply *.stl *.obj *.vtp)"));
     if (!path.isEmpty()) save_surface(path);
 }
 
@@ -161,10 +161,6 @@ void SaveController::write_surface(const QString& path, const std::shared_ptr<Su
         messages_.show_done(
             tr("Saved %1, %2 triangles", nullptr, triangles).arg(path, count_text(triangles)));
     });
-}
-
-void SaveController::settle_edits(const std::function<void()>& action) {
-    if (may_lose_edits(action)) action();
 }
 
 bool SaveController::may_lose_edits(const std::function<void()>& once_saved) {

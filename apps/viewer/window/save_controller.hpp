@@ -34,14 +34,12 @@ class SaveController : public Controller {
     /// More triangles than this are many.
     void set_many_triangles(std::size_t triangles) { many_triangles_ = triangles; }
     bool saving() const { return saving_.busy(); }
-    BackgroundTask& task() { return saving_; }
 
     /// True if there are no unsaved edits, or the user goes on without them. Offers to save them,
     /// and calls `once_saved` when that is done. False while the volume is being saved.
     bool may_lose_edits(const std::function<void()>& once_saved);
-    /// `action` at once if may_lose_edits(), or once they are saved.
-    void settle_edits(const std::function<void()>& action);
-    /// The same before something is saved that names the volume: then its edits are not lost.
+    /// `action` at once, or once edits are saved or given up. For what names the volume, so that
+    /// its edits are not lost.
     void save_edits_first(const std::function<void()>& action);
     /// The samples, if they have edits that were not saved; else null.
     std::shared_ptr<const Samples> unsaved() const;

@@ -81,10 +81,10 @@ void FileController::save_session(const QString& path) {
 
 void FileController::ask_save_session(const QString& name, const std::function<void()>& then) {
     saver_.save_edits_first([=, this] {
-        const QString path =
-            !name.isEmpty()
-                ? name
-                : ask_save_name(messages_.window(), tr("Save the session"), "session.json", "json");
+        const QString path = !name.isEmpty()
+                                 ? name
+                                 : ask_save_name(messages_.window(), tr("Save the session"),
+                                                 "session.json", "json", tr("Sessions (*.json)"));
         if (path.isEmpty()) return;
         save_session(path);
         layers_.set_saved();

@@ -22,7 +22,6 @@ class ToolControls : public EffectForm, protected Desk {
     static bool is_tool_file(const QString& path);
     /// Feels with the tool of a file. Errors are shown; the tool before stays then.
     void open(const QString& path);
-    BackgroundTask& reader() { return reader_; }
     BackgroundTask& maker() { return maker_; }
     /// Another choice, chosen as by hand.
     void add(const QString& name, const io::ToolSpec& spec);

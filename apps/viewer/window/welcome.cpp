@@ -174,29 +174,21 @@ QDialog* make_first_steps_dialog(QWidget* window) {
         window, "first_steps", Help::tr("First steps"),
         Help::tr(
             "<h3>Touch</h3><p>Click a surface: the probe goes there and touches it. Hold the "
-            "button, "
-            "or "
-            "turn the wheel, to press; drag to move along the surface. The blue ball is your hand, "
-            "the "
-            "vermilion one the proxy, which stays on the surface; the green arrow is the force. "
-            "The "
-            "right button turns the view. With a haptic device, choose it under <i>Device</i>.</p>"
+            "button, or turn the wheel, to press; drag to move along the surface. The blue ball "
+            "is your hand, the vermilion one the proxy, which stays on the surface; the green "
+            "arrow is the force. The right button turns the view. With a haptic device, choose it "
+            "under <i>Device</i>.</p>"
             "<h3>Choose what is solid</h3><p>Drag the line in the histogram: everything denser is "
             "solid, at once. The ticks are good levels to begin with.</p>"
             "<h3>Go deeper</h3><p>Under <i>Pressing through</i> switch on <i>Surfaces give "
             "way</i>: press harder, and the hand goes through to what is denser.</p>"
             "<h3>See more</h3><p>Under <i>Look</i> add a surface: skin over bone. V cuts "
-            "everything "
-            "open "
-            "with a plane; drag its blue balls. M measures a length. Under <i>Data</i> open an "
-            "overlay: "
-            "labels or another image.</p>"
+            "everything open with a plane; drag its blue balls. M measures a length. Under "
+            "<i>Data</i> open an overlay: labels or another image.</p>"
             "<h3>Change the data</h3><p>Switch the brush on (B) and touch: it carves, adds, "
-            "smooths or "
-            "paints. Ctrl+Z takes a stroke back, Ctrl+Shift+S saves the volume.</p>"
+            "smooths or paints. Ctrl+Z takes a stroke back, Ctrl+Shift+S saves the volume.</p>"
             "<h3>Come back</h3><p>Ctrl+S saves the session: volume, level, view and settings. "
-            "Ctrl+R "
-            "records what is felt, to be played later.</p>"));
+            "Ctrl+R records what is felt, to be played later.</p>"));
 }
 
 QDialog* make_shortcuts_dialog(QWidget* window) {

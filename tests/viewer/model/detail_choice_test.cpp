@@ -1,6 +1,6 @@
 // Levels and boxes for pictures: about a sample a pixel, within limits, never finer than what is
 // felt; and samples that join the overview's.
-#include "apps/viewer/model/detail_choice.hpp"
+#include "apps/viewer/model/detail.hpp"
 
 #include <gtest/gtest.h>
 

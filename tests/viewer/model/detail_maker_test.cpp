@@ -5,7 +5,7 @@
 #include <map>
 #include <mutex>
 
-#include "apps/viewer/model/detail_maker.hpp"
+#include "apps/viewer/model/detail.hpp"
 #include "palpate/edit.hpp"
 #include "stream/box_bytes.hpp"
 #include "support/edits.hpp"

@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "apps/viewer/model/session_file.hpp"
-#include "apps/viewer/model/stroke.hpp"
 #include "palpate/io/error.hpp"
 #include "palpate/io/layers_file.hpp"
 #include "support/scratch_folder.hpp"

@@ -5,7 +5,6 @@
 
 #include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/model/overlay.hpp"
-#include "apps/viewer/model/ruler.hpp"
 #include "apps/viewer/model/transfer.hpp"
 #include "palpate/field.hpp"
 #include "support/fields.hpp"

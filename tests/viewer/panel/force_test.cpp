@@ -10,9 +10,9 @@
 #include <functional>
 #include <limits>
 
+#include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/panel/inputs.hpp"
-#include "apps/viewer/panel/sections.hpp"
-#include "apps/viewer/window/hand_switch.hpp"
+#include "apps/viewer/window/device_controls.hpp"
 
 namespace palpate::viewer {
 namespace {

@@ -1,7 +1,7 @@
 // The switch between two hands, in the panel.
-#include "apps/viewer/window/hand_switch.hpp"
 #include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/panel/colours.hpp"
+#include "apps/viewer/window/device_controls.hpp"
 #include "tests/viewer/panel/panel_fixture.hpp"
 
 namespace palpate::viewer {

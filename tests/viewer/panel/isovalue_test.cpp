@@ -17,6 +17,7 @@ namespace {
 
 class Isovalue : public PanelFixture {
   protected:
+    Isovalue() { set(); }
     LevelChart* chart() { return find<LevelChart>("level_chart"); }
     /// A place in the plot over a level.
     QPointF over(double level) {
@@ -58,7 +59,6 @@ TEST_F(Isovalue, a_session_is_shown_and_nothing_is_asked_for) {
 }
 
 TEST_F(Isovalue, dragging_the_line_asks_for_the_levels_under_the_pointer) {
-    set();
     drag(chart(), over(300), over(1200));
     const std::vector<double> asked = levels();
     ASSERT_FALSE(asked.empty());
@@ -70,7 +70,6 @@ TEST_F(Isovalue, dragging_the_line_asks_for_the_levels_under_the_pointer) {
 }
 
 TEST_F(Isovalue, the_first_level_of_a_drag_is_emitted_at_once_and_the_last_always) {
-    set();
     drag(chart(), over(0), over(100), Qt::NoModifier, false);
     ASSERT_FALSE(commands.empty());  // without waiting
     for (int i = 1; i <= 500; ++i) move(chart(), over(100 + i));
@@ -79,7 +78,6 @@ TEST_F(Isovalue, the_first_level_of_a_drag_is_emitted_at_once_and_the_last_alway
 }
 
 TEST_F(Isovalue, a_tick_of_a_suggested_level_is_taken_exactly) {
-    set();
     const double suggested = run::suggested_isovalues(histogram).front();
     QTest::mouseClick(chart(), Qt::LeftButton, {},
                       QPoint(static_cast<int>(chart()->axis().x_of(suggested)), 2));
@@ -88,7 +86,6 @@ TEST_F(Isovalue, a_tick_of_a_suggested_level_is_taken_exactly) {
 }
 
 TEST_F(Isovalue, arrow_keys_and_wheel_step_finely_once_the_chart_has_the_focus) {
-    set();
     panel.setFocus();
     wheel(chart(), 3);
     EXPECT_TRUE(levels().empty()) << "scrolling the panel must not change what is felt";
@@ -104,7 +101,6 @@ TEST_F(Isovalue, arrow_keys_and_wheel_step_finely_once_the_chart_has_the_focus) 
 }
 
 TEST_F(Isovalue, the_slider_covers_the_data_and_follows) {
-    set();
     auto* slider = find<QSlider>("isovalue_slider");
     slider->setFocus();
     QTest::keyClick(slider, Qt::Key_End);
@@ -116,7 +112,6 @@ TEST_F(Isovalue, the_slider_covers_the_data_and_follows) {
 }
 
 TEST_F(Isovalue, a_typed_number_is_requested_as_it_is_even_outside_the_data) {
-    set();
     type("isovalue_box", "123.4567891");
     EXPECT_EQ(levels(), (std::vector<double>{123.4567891}));
     // Another look at it, with fewer digits shown, changes nothing.
@@ -129,7 +124,6 @@ TEST_F(Isovalue, a_typed_number_is_requested_as_it_is_even_outside_the_data) {
 }
 
 TEST_F(Isovalue, a_text_that_is_no_number_is_not_accepted) {
-    set();
     type("isovalue_box", "hello");
     type("isovalue_box", "-");
     type("isovalue_box", "nan");
@@ -138,7 +132,6 @@ TEST_F(Isovalue, a_text_that_is_no_number_is_not_accepted) {
 }
 
 TEST_F(Isovalue, random_numbers_come_back_from_the_box_unchanged) {
-    set();
     std::mt19937_64 random(11);
     auto* box = find<NumberBox>("isovalue_box");
     for (int i = 0; i < 2000; ++i) {
@@ -153,7 +146,6 @@ TEST_F(Isovalue, random_numbers_come_back_from_the_box_unchanged) {
 }
 
 TEST_F(Isovalue, a_refused_level_goes_back_and_says_why) {
-    set();
     refuse_with = "too many commands at once";
     type("isovalue_box", "700");
     EXPECT_EQ(levels().size(), 1U);
@@ -168,7 +160,6 @@ TEST_F(Isovalue, a_refused_level_goes_back_and_says_why) {
 }
 
 TEST_F(Isovalue, the_level_felt_is_a_second_marker_while_it_differs) {
-    set();
     Snapshot now;
     now.session.tick.proxy.isovalue = 300;
     effect.observe(now);
@@ -204,7 +195,6 @@ TEST_F(Isovalue, the_other_side_and_another_field_are_felt_once_they_are_chosen)
 }
 
 TEST_F(Isovalue, dequantizing_is_asked_for_and_shown_once_the_volume_has_been_read_again) {
-    set();
     auto* box = find<QCheckBox>("dequantize");
     EXPECT_FALSE(box->isEnabled());
     std::vector<bool> wanted;
@@ -224,7 +214,6 @@ TEST_F(Isovalue, dequantizing_is_asked_for_and_shown_once_the_volume_has_been_re
 }
 
 TEST_F(Isovalue, zoomed_in_a_pixel_is_less_and_the_slider_still_covers_all) {
-    set();
     const LevelAxis whole = chart()->axis();
     const double coarse = pixel();
     wheel(chart(), 8, Qt::ControlModifier);
@@ -278,6 +267,7 @@ TEST_F(Isovalue, any_data_can_be_shown_and_stepped_through) {
 }
 
 TEST_F(Isovalue, without_a_volume_nothing_can_be_asked_for) {
+    effect.end();
     drag(chart(), QPointF(50, 30), QPointF(200, 30));
     set();
     effect.end();
@@ -290,7 +280,6 @@ TEST_F(Isovalue, without_a_volume_nothing_can_be_asked_for) {
 }
 
 TEST_F(Isovalue, clearing_in_the_middle_of_a_drag_is_safe) {
-    set();
     drag(chart(), over(300), over(900), Qt::NoModifier, false);
     effect.end();
     const std::size_t before = commands.size();

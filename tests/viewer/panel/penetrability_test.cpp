@@ -9,8 +9,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/panel/level_chart.hpp"
-#include "apps/viewer/panel/sections.hpp"
 
 namespace palpate::viewer {
 namespace {

@@ -11,11 +11,10 @@
 #include <vector>
 
 #include "apps/viewer/model/transfer.hpp"
+#include "apps/viewer/panel/colours.hpp"
 #include "apps/viewer/panel/form.hpp"
-#include "apps/viewer/panel/icons.hpp"
 #include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/layout.hpp"
-#include "apps/viewer/panel/sections.hpp"
 #include "apps/viewer/window/device_controls.hpp"
 #include "palpate/run/source.hpp"
 #include "tests/viewer/panel/panel_fixture.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "apps/viewer/panel/timeline_view.hpp"
+#include "apps/viewer/panel/timeline.hpp"
 
 namespace palpate::viewer {
 namespace {

@@ -7,7 +7,6 @@
 #include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/window/device_controls.hpp"
-#include "apps/viewer/window/hand_switch.hpp"
 #include "apps/viewer/window/tool_controls.hpp"
 #include "viewer/panel/panel_fixture.hpp"
 

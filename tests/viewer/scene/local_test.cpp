@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
-#include "apps/viewer/scene/local.hpp"
+#include "apps/viewer/scene/hand_marks.hpp"
 #include "support/fields.hpp"
 #include "support/random.hpp"
 

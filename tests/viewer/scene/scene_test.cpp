@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 #include <limits>
 
-#include "apps/viewer/scene/render_thread.hpp"
+#include "apps/viewer/scene/render_request.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "support/fields.hpp"
 #include "viewer/scene/shown_scene.hpp"
@@ -30,12 +30,20 @@ Camera from_front(const Field& field, double half_height = 40) {
     return {physical_centre(field.geometry()), Vec3(0, -1, 0), Vec3(0, 0, 1), half_height};
 }
 
+/// A ball seen from the front.
+struct ShownBall : ShownScene {
+    explicit ShownBall(double level, const Look& look = bare(), const Vec3& origin = Vec3::Zero())
+        : field(ball(origin)) {
+        set(scene, &Shown::look, look);
+        scene.set_field(field, level);
+        scene.set_camera(from_front(field));
+    }
+    const Field field;
+};
+
 TEST(DrawnScene, shows_a_ball_as_large_as_it_is_where_it_is) {
-    ShownScene shown;
-    const Field field = ball(Vec3(-300, 120, 1500));  // far from the origin, as scanners do
-    set(shown.scene, &Shown::look, bare());
-    shown.scene.set_field(field, 0.5);
-    shown.scene.set_camera(from_front(field));
+    // Far from the origin, as scanners do.
+    ShownBall shown(0.5, bare(), Vec3(-300, 120, 1500));
     const Blob seen = blob(shown.settled("ball"), is_bone);
     EXPECT_NEAR(seen.x, 200, 1);
     EXPECT_NEAR(seen.y, 160, 1);
@@ -45,11 +53,7 @@ TEST(DrawnScene, shows_a_ball_as_large_as_it_is_where_it_is) {
 }
 
 TEST(DrawnScene, keeps_its_shape_until_there_is_a_picture_of_another_size) {
-    ShownScene shown;
-    const Field field = ball();
-    set(shown.scene, &Shown::look, bare());
-    shown.scene.set_field(field, 0.5);
-    shown.scene.set_camera(from_front(field));
+    ShownBall shown(0.5);
     shown.settled();
     for (const int width : {200, 800}) {
         shown.scene.resize(width, 320);
@@ -102,11 +106,8 @@ TEST(DrawnScene, mirrored_and_oblique_grids_are_seen_where_their_samples_lie) {
 }
 
 TEST(DrawnScene, hand_and_proxy_are_balls_of_their_colours_at_their_places) {
-    ShownScene shown;
-    const Field field = ball();
-    set(shown.scene, &Shown::look, bare());
-    shown.scene.set_field(field, 0.9);
-    shown.scene.set_camera(from_front(field));
+    ShownBall shown(0.9);
+    const Field& field = shown.field;
     const Vec3 middle = physical_centre(field.geometry());
     const Vec3 hip = middle + Vec3(-22, -25, 20), scp = middle + Vec3(24, -25, -17);
     shown.scene.show_snapshot(snapshot_at(hip, scp));
@@ -127,11 +128,8 @@ TEST(DrawnScene, hand_and_proxy_are_balls_of_their_colours_at_their_places) {
 }
 
 TEST(DrawnScene, a_second_hand_is_drawn_in_lighter_colours_with_its_force) {
-    ShownScene shown;
-    const Field field = ball();
-    set(shown.scene, &Shown::look, bare());
-    shown.scene.set_field(field, 0.9);
-    shown.scene.set_camera(from_front(field));
+    ShownBall shown(0.9);
+    const Field& field = shown.field;
     const Vec3 middle = physical_centre(field.geometry());
     const Vec3 hip = middle + Vec3(-22, -25, 20), scp = middle + Vec3(24, -25, 17);
     const Vec3 other_hip = middle + Vec3(-22, -25, -20), other_scp = middle + Vec3(24, -25, -17);
@@ -155,11 +153,8 @@ TEST(DrawnScene, a_second_hand_is_drawn_in_lighter_colours_with_its_force) {
 }
 
 TEST(DrawnScene, force_points_where_it_points_in_the_body_and_is_longer_when_stronger) {
-    ShownScene shown;
-    const Field field = ball();
-    set(shown.scene, &Shown::look, bare());
-    shown.scene.set_field(field, 0.9);
-    shown.scene.set_camera(from_front(field));
+    ShownBall shown(0.9);
+    const Field& field = shown.field;
     const Vec3 at = physical_centre(field.geometry()) + Vec3(-30, -30, -25);
     Snapshot snapshot = snapshot_at(at, at, Vec3(0, 0, 1));
     // The device's z is the body's left (+x), to the right in this view.
@@ -175,11 +170,8 @@ TEST(DrawnScene, force_points_where_it_points_in_the_body_and_is_longer_when_str
 }
 
 TEST(DrawnScene, no_probe_is_shown_while_the_device_is_not_ready_or_contact_is_off) {
-    ShownScene shown;
-    const Field field = ball();
-    set(shown.scene, &Shown::look, bare());
-    shown.scene.set_field(field, 0.5);
-    shown.scene.set_camera(from_front(field));
+    ShownBall shown(0.5);
+    const Field& field = shown.field;
     const Vec3 at = physical_centre(field.geometry()) + Vec3(-22, -25, 20);
     for (const DeviceStatus status :
          {DeviceStatus::starting, DeviceStatus::lost, DeviceStatus::stale}) {
@@ -201,11 +193,8 @@ TEST(DrawnScene, no_probe_is_shown_while_the_device_is_not_ready_or_contact_is_o
 }
 
 TEST(DrawnScene, markers_behind_the_surface_are_faintly_visible) {
-    ShownScene shown;
-    const Field field = ball();
-    set(shown.scene, &Shown::look, bare());
-    shown.scene.set_field(field, 0.5);
-    shown.scene.set_camera(from_front(field));
+    ShownBall shown(0.5);
+    const Field& field = shown.field;
     const QImage without = shown.settled();
     const Vec3 middle = physical_centre(field.geometry());
     const auto blueness = [](QRgb p) { return qBlue(p) - qRed(p); };
@@ -219,13 +208,10 @@ TEST(DrawnScene, markers_behind_the_surface_are_faintly_visible) {
 }
 
 TEST(DrawnScene, glass_lets_the_probe_through_and_tints_it) {
-    ShownScene shown;
-    const Field field = ball();
     Look look = bare();
     look.surface_opacity = 0.3;
-    set(shown.scene, &Shown::look, look);
-    shown.scene.set_field(field, 0.5);
-    shown.scene.set_camera(from_front(field));
+    ShownBall shown(0.5, look);
+    const Field& field = shown.field;
     const Vec3 middle = physical_centre(field.geometry());
     shown.scene.show_snapshot(snapshot_at(middle, middle));
     const QImage image = shown.settled("glass");
@@ -239,11 +225,7 @@ TEST(DrawnScene, glass_lets_the_probe_through_and_tints_it) {
 }
 
 TEST(DrawnScene, after_a_sweep_of_fifty_isovalues_the_newest_is_shown) {
-    ShownScene shown;
-    const Field field = ball();
-    set(shown.scene, &Shown::look, bare());
-    shown.scene.set_field(field, 0.1);
-    shown.scene.set_camera(from_front(field));
+    ShownBall shown(0.1);
     double announced = 0;
     QObject::connect(&shown.scene, &Scene::surface_ready,
                      [&](double isovalue, double) { announced = isovalue; });

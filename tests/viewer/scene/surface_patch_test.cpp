@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "apps/viewer/model/detail_choice.hpp"
+#include "apps/viewer/model/detail.hpp"
 #include "apps/viewer/scene/surface_blocks.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "support/parameter.hpp"

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "apps/viewer/scene/cut.hpp"
+#include "apps/viewer/scene/hand_marks.hpp"
 #include "apps/viewer/scene/layer_prop.hpp"
-#include "apps/viewer/scene/local.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "support/fields.hpp"
 #include "viewer/scene/shown_scene.hpp"

@@ -21,6 +21,7 @@ namespace {
 class ChangingData : public InWindow {
   protected:
     run::EditState work() { return window_->live()->data().editor().state(); }
+    bool can(const char* action) { return part<QAction>(action).isEnabled(); }
     /// Presses, and carves until something is gone.
     void carve() {
         press_until_force();
@@ -34,13 +35,18 @@ TEST_F(ChangingData, the_brush_carves_what_is_felt_and_undo_and_redo_bring_it_ba
     feel("synthetic:sphere:48x48x48");
     save("before");
     const auto start = work().samples;
+    EXPECT_FALSE(can("undo_action") || can("redo_action")) << "nothing was edited";
     carve();
     EXPECT_TRUE(work().changed);
+    wait_until([&] { return can("undo_action"); });
+    EXPECT_FALSE(can("redo_action"));
     wait_until_settled();
     save("carved");
     press(Qt::Key_Z, Qt::ControlModifier);
     wait_until([&] { return work().samples == start; });
     wait_until([&] { return now().session.version == 0; });
+    wait_until([&] { return can("redo_action"); });
+    EXPECT_FALSE(can("undo_action"));
     press(Qt::Key_Z, Qt::ControlModifier | Qt::ShiftModifier);
     wait_until([&] { return work().samples != start; });
     wait_until([&] { return part<QPushButton>("undo").isEnabled(); });
@@ -106,7 +112,7 @@ TEST_F(ChangingData, a_hand_that_is_sent_elsewhere_edits_nothing_on_its_way) {
     wait_for_hand();
     press(Qt::Key_B);
     Scene& scene = window_->views().scene();
-    wait_until([&] { return work().version > 0; });
+    wait_until([&] { return can("undo_action"); });
     press(Qt::Key_Z, Qt::ControlModifier);
     wait_until([&] { return !work().changed; });
     QTest::mouseClick(&scene, Qt::LeftButton, {}, scene.rect().center() + QPoint(60, 0));

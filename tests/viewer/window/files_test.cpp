@@ -322,11 +322,7 @@ TEST_F(Files, screenshot_waits_for_the_hand_writes_and_closes) {
 
 TEST_F(Files, measurements_are_not_lost_without_a_question) {
     feel("synthetic:sphere:48x48x48");
-    SlicePane& axial = window_->views().slice(2);
-    press(Qt::Key_M);
-    for (const int x : {0, 20}) {
-        QTest::mouseClick(&axial, Qt::LeftButton, {}, axial.rect().center() + QPoint(x, 5));
-    }
+    measure(window_->views().slice(2));
     ASSERT_EQ(window_->measuring().measurements().size(), 1U);
     answer(QMessageBox::Cancel);
     EXPECT_FALSE(window_->close());

@@ -302,10 +302,7 @@ TEST_F(German, lengths_are_in_Voxel_where_nothing_gives_the_spacing) {
     open_german();
     feel(scratch("a.nrrd").toStdString());
     SlicePane& pane = window_->views().slice(2);
-    press(Qt::Key_M);
-    for (const int x : {0, 20}) {
-        QTest::mouseClick(&pane, Qt::LeftButton, {}, pane.rect().center() + QPoint(x, 5));
-    }
+    measure(pane);
     EXPECT_TRUE(window_->statusBar()->currentMessage().endsWith(" Voxel"));
     wait_until([&] {
         return part<QLabel>("contact").text().contains(" Voxel im Vol") &&

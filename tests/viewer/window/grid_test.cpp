@@ -154,15 +154,9 @@ TEST_F(Grid, without_a_spacing_says_so_and_takes_one) {
     EXPECT_FALSE(QRect(corner, hint.size()).intersects(badge().geometry())) << "both can be read";
     press(Qt::Key_Space);
     SlicePane& pane = window_->views().slice(2);
-    const auto measure = [&] {
-        press(Qt::Key_M);
-        for (const int x : {0, 20}) {
-            QTest::mouseClick(&pane, Qt::LeftButton, {}, pane.rect().center() + QPoint(x, 5));
-        }
-        return window_->statusBar()->currentMessage();
-    };
     const auto ends_in = [&](const char* unit) {
-        EXPECT_TRUE(measure().endsWith(QString(" ") + unit));
+        measure(pane);
+        EXPECT_TRUE(window_->statusBar()->currentMessage().endsWith(QString(" ") + unit));
         wait_until([&] {
             return part<QLabel>("contact").text().contains(QString(" %1 in the vol").arg(unit)) &&
                    part<QLabel>("readout").text().endsWith(QString("/%1").arg(unit));

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iterator>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -163,9 +164,7 @@ TEST_F(SlowDevices, that_are_opened_with_a_volume_leave_the_window_free) {
 
 TEST_F(SlowDevices, that_are_chosen_leave_the_hand_with_its_own_until_they_answer) {
     feel_with("mouse");
-    driver_.opens.close();
-    connect("haply");
-    wait_until([&] { return driver_.opens.waiting() == 1; });
+    begin_to(&Connector::use_device, "haply");
     expect_it_answers();
     EXPECT_EQ(used(), "mouse");
     driver_.opens.open();
@@ -175,9 +174,7 @@ TEST_F(SlowDevices, that_are_chosen_leave_the_hand_with_its_own_until_they_answe
 
 TEST_F(SlowDevices, can_be_given_up) {
     feel_with("mouse");
-    driver_.opens.close();
-    connect("haply");
-    wait_until([&] { return driver_.opens.waiting() == 1; });
+    begin_to(&Connector::use_device, "haply");
     late_strip();
     cancel_task();
     driver_.opens.open();
@@ -305,10 +302,8 @@ TEST_F(SlowDevices, are_not_waited_for_by_what_is_opened_instead) {
 TEST_F(SlowDevices, that_nobody_wants_any_more_are_closed_beside_the_window) {
     feel_with("mouse");
     add_hand("simulated:hand=hold");
-    driver_.opens.close();
     driver_.closes.close();
-    connect("haply");
-    wait_until([&] { return driver_.opens.waiting() == 1; });
+    begin_to(&Connector::use_device, "haply");
     window_->content().remove_hand();
     driver_.opens.open();
     wait_until([&] { return driver_.closes.waiting() == 1; });
@@ -385,72 +380,66 @@ class SlowReader {
     std::jthread thread_;
 };
 
-TEST_F(SlowDevices, a_slow_reader_of_a_recording_does_not_keep_the_window_open) {
-    feel_with("simulated:hand=hold");
-    const std::string pipe = scratch("pipe").toStdString();
-    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-    SlowReader reader(pipe);
-    record("pipe");
-    ASSERT_TRUE(window_->recordings().recording());
-    wait_for_ticks(600);  // more than a pipe holds
+/// Records to a pipe more than it holds.
+class SlowReaders : public SlowDevices {
+  protected:
+    void SetUp() override {
+        SlowDevices::SetUp();
+        feel_with("simulated:hand=hold");
+        const std::string pipe = scratch("pipe").toStdString();
+        ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+        reader_.emplace(pipe);
+        record("pipe");
+        ASSERT_TRUE(window_->recordings().recording());
+        wait_for_ticks(600);
+    }
+    /// Lets it read on. True if the recording is complete.
+    bool has_end() {
+        reader_->gate.open();
+        reader_->join();
+        return reader_->text.find("\n# end ") != std::string::npos;
+    }
+
+    std::optional<SlowReader> reader_;
+};
+
+TEST_F(SlowReaders, do_not_keep_the_window_open) {
     window_->close();
     EXPECT_FALSE(window_->isVisible());
     EXPECT_EQ(window_->live(), nullptr) << "its force has ended";
-    EXPECT_EQ(reader.gate.waiting(), 1) << "the window has waited for it";
-    reader.gate.open();
+    EXPECT_EQ(reader_->gate.waiting(), 1) << "the window has waited for it";
+    reader_->gate.open();
     EXPECT_EQ(window_->finish(), 0);
-    reader.join();
-    EXPECT_NE(reader.text.find("\n# end "), std::string::npos) << "the recording is complete";
+    EXPECT_TRUE(has_end());
 }
 
-TEST_F(SlowDevices, a_slow_reader_does_not_keep_a_recording_from_being_stopped) {
-    feel_with("simulated:hand=hold");
-    const std::string pipe = scratch("pipe").toStdString();
-    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-    SlowReader reader(pipe);
-    record("pipe");
-    wait_for_ticks(600);  // more than a pipe holds
+TEST_F(SlowReaders, do_not_keep_a_recording_from_being_stopped) {
     press(Qt::Key_R, Qt::ControlModifier);
     EXPECT_FALSE(window_->recordings().recording());
     const std::int64_t stopped = now().number;
     wait_for_ticks(700);  // longer than the end of a program would wait for it
     EXPECT_GE(now().number, stopped + 700) << "the session goes on";
     EXPECT_NE(late_strip(), nullptr);
-    reader.gate.open();
+    reader_->gate.open();
     wait_until([&] { return window_->recordings().settled(); });
-    reader.join();
-    EXPECT_NE(reader.text.find("\n# end "), std::string::npos) << "the recording is complete";
-    EXPECT_LT(std::ranges::count(reader.text, '\n'), stopped + 300)
+    EXPECT_TRUE(has_end());
+    EXPECT_LT(std::ranges::count(reader_->text, '\n'), stopped + 300)
         << "and ended when it was asked";
     window_->close();
     EXPECT_EQ(window_->finish(), 0);
 }
 
-TEST_F(SlowDevices, a_slow_reader_of_a_stopped_recording_can_be_given_up) {
-    feel_with("simulated:hand=hold");
-    const std::string pipe = scratch("pipe").toStdString();
-    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-    SlowReader reader(pipe);
-    record("pipe");
-    wait_for_ticks(600);  // more than a pipe holds
+TEST_F(SlowReaders, of_a_stopped_recording_can_be_given_up) {
     press(Qt::Key_R, Qt::ControlModifier);
     late_strip();
     cancel_task();
     wait_until([&] { return window_->recordings().settled(); });
-    reader.gate.open();
-    reader.join();
-    EXPECT_EQ(reader.text.find("\n# end "), std::string::npos);
+    EXPECT_FALSE(has_end());
     window_->close();
     EXPECT_EQ(window_->finish(), 5) << "the recording is not whole";
 }
 
-TEST_F(SlowDevices, a_reader_that_is_given_up_does_not_keep_the_next_recording_from_its_ticks) {
-    feel_with("simulated:hand=hold");
-    const std::string pipe = scratch("pipe").toStdString();
-    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-    SlowReader reader(pipe);
-    record("pipe");
-    wait_for_ticks(600);  // more than a pipe holds
+TEST_F(SlowReaders, that_are_given_up_do_not_keep_the_next_recording_from_its_ticks) {
     struct GivenUp {};
     const std::string next = scratch("next.csv").toStdString();
     run::Run& live = *window_->content().live();
@@ -461,8 +450,7 @@ TEST_F(SlowDevices, a_reader_that_is_given_up_does_not_keep_the_next_recording_f
                  GivenUp);
     wait_for_ticks(5);
     EXPECT_GT(live.stop_recording(), 0);
-    reader.gate.open();
-    reader.join();
+    has_end();
 }
 
 }  // namespace

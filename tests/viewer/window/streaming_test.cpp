@@ -357,7 +357,9 @@ TEST_F(Streaming, of_several_levels_channels_and_times_another_is_chosen_while_o
     support::put_image(scratch_.path() / "image.zarr");
     feel(scratch("image.zarr").toStdString());
     ASSERT_NE(window_->live(), nullptr);
-    EXPECT_TRUE(window_->statusBar()->currentMessage().contains("2 channels, 2 times"));
+    for (const char* note : {"2 channels, 2 times", "Felt through the device mouse"}) {
+        EXPECT_TRUE(window_->statusBar()->currentMessage().contains(note)) << note;
+    }
     auto* action = window_->findChild<QAction*>("choose_level");
     ASSERT_NE(action, nullptr);
     wait_until([&] { return action->isEnabled(); });

@@ -177,6 +177,15 @@ class InWindow : public testing::Test {
         QTest::keyClick(window_.get(), key, with);
     }
 
+    /// A length between two points of a pane.
+    void measure(SlicePane& pane) {
+        press(Qt::Key_M);
+        handle_events();
+        for (const int x : {0, 20}) {
+            QTest::mouseClick(&pane, Qt::LeftButton, {}, pane.rect().center() + QPoint(x, 5));
+        }
+    }
+
     /// In the middle of a widget, a notch forward for each step.
     /// `notch`: of each step; 120 is that of a common wheel.
     void turn_wheel(QWidget& widget, int steps, int notch = 120) {
@@ -224,23 +233,30 @@ class InWindow : public testing::Test {
         QApplication::processEvents();
         return widget;
     }
-    /// Does what opens a file dialog, and gives a name there. The dialog has an event loop of its
-    /// own: the name comes from within, again where it came before it was ready. It comes at once,
-    /// because after each key Qt looks for completions in the whole folder.
-    void typing(const QString& name, const std::function<void()>& open) {
-        QTimer typist;
-        int typed = 0;
-        QObject::connect(&typist, &QTimer::timeout, [&] {
+    /// Does what opens a file dialog, and `act` in the line for its name. The dialog has an event
+    /// loop of its own: it is done from within, again where that came before it was ready.
+    static void in_file_dialog(const std::function<void()>& open,
+                               const std::function<void(QLineEdit&)>& act) {
+        QTimer person;
+        int done = 0;
+        QObject::connect(&person, &QTimer::timeout, [&] {
             QWidget* dialog = QApplication::activeModalWidget();
             auto* line = dialog ? dialog->findChild<QLineEdit*>("fileNameEdit") : nullptr;
             if (!line || !line->isVisible()) return;
-            ++typed;
-            line->setText(name);
-            QTest::keyClick(line, Qt::Key_Return);
+            ++done;
+            act(*line);
         });
-        typist.start(10);
+        person.start(10);
         open();
-        EXPECT_GT(typed, 0);
+        EXPECT_GT(done, 0);
+    }
+    /// Gives a name there, at once, because after each key Qt looks for completions in the whole
+    /// folder.
+    static void typing(const QString& name, const std::function<void()>& open) {
+        in_file_dialog(open, [&](QLineEdit& line) {
+            line.setText(name);
+            QTest::keyClick(&line, Qt::Key_Return);
+        });
     }
     /// The same, of a dialog that a key opens, with Ctrl.
     void type_in_dialog(Qt::Key key, const QString& name, Qt::KeyboardModifiers with = {}) {

@@ -4,7 +4,7 @@
 #include <QLabel>
 #include <QTextBrowser>
 
-#include "apps/viewer/model/ruler.hpp"
+#include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/panel/layout.hpp"
 #include "viewer/window/window_fixture.hpp"
 
@@ -65,18 +65,31 @@ TEST_F(WordsInWindow, suggest_the_name_of_the_volume_for_its_surface) {
         io::write_volume(ball, scratch_.path() / name);
         feel(scratch(name).toStdString());
         QString suggested;
-        QTimer person;
-        QObject::connect(&person, &QTimer::timeout, [&] {
-            QWidget* dialog = QApplication::activeModalWidget();
-            auto* line = dialog ? dialog->findChild<QLineEdit*>("fileNameEdit") : nullptr;
-            if (!line || !line->isVisible()) return;
-            suggested = line->text();
-            QTest::keyClick(line, Qt::Key_Escape);
-        });
-        person.start(10);
-        window_->saver().ask_save_surface();
-        person.stop();
+        in_file_dialog([&] { window_->saver().ask_save_surface(); },
+                       [&](QLineEdit& line) {
+                           suggested = line.text();
+                           QTest::keyClick(&line, Qt::Key_Escape);
+                       });
         EXPECT_EQ(suggested, "iguana.ply") << name;
+    }
+}
+
+TEST_F(WordsInWindow, name_the_kind_of_file_that_a_dialog_saves) {
+    feel("synthetic:sphere:24x24x24");
+    struct Case {
+        Qt::Key key;
+        const char* kind;
+    };
+    for (const Case& one :
+         {Case{Qt::Key_S, "Sessions (*.json)"}, Case{Qt::Key_P, "Pictures (*.png)"},
+          Case{Qt::Key_R, "Recordings (*.csv)"}}) {
+        QStringList kinds;
+        in_file_dialog([&] { press(one.key, Qt::ControlModifier); },
+                       [&](QLineEdit& line) {
+                           kinds = qobject_cast<QFileDialog*>(line.window())->nameFilters();
+                           QTest::keyClick(&line, Qt::Key_Escape);
+                       });
+        EXPECT_EQ(kinds, QStringList{one.kind});
     }
 }
 
