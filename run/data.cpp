@@ -161,10 +161,15 @@ void Data::check_save_name(const std::string& path) const {
     is_zarr(path) ? stream::check_zarr_place(path) : io::check_output(path);
 }
 
+bool Data::is_edited() const {
+    if (!editor_) return false;
+    const EditState state = editor_->state();
+    return state.changed || (state.samples->bricks() && state.samples->bricks()->size() > 0);
+}
+
 void Data::require_saving() const {
-    if (streamer_ && !editor_->state().changed) {
-        throw std::invalid_argument(
-            "nothing was edited since it was opened or saved: palpate convert copies the volume");
+    if (streamer_ && !is_edited()) {
+        throw std::invalid_argument("nothing was edited: palpate convert copies the volume");
     }
 }
 

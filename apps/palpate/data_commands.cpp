@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -77,8 +78,15 @@ DataRequest fill(const CommandWords& words, const Volume& volume) {
     words.expect(3);
     const auto [low, high] = two_points(words);
     const double most = std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
-    if (!(most <= 1 << 20)) words.refuse();
+    if (!(most <= 1 << 20) || low != low.array().floor().matrix() ||
+        high != high.array().floor().matrix()) {
+        words.refuse();
+    }
     const SampleBox box{low.cwiseMin(high).cast<int>(), low.cwiseMax(high).cast<int>()};
+    if ((box.high.array() < 0).any() ||
+        (box.low.array() >= volume.geometry().size.array()).any()) {
+        throw std::invalid_argument("this box lies outside the volume");
+    }
     const edit::Fill fill{box, io::level_from_text(words[2], volume)};
     return [fill](run::Data& data, const Field&, double, const io::Progress& progress) {
         data.editor().apply(fill, progress);
@@ -182,6 +190,10 @@ DataRequest step(int frames) {
 DataRequest data_request(const CommandWords& words, const run::Data& now, const Volume& volume) {
     const std::string& name = words.name();
     const bool alone = words.count() == 1;
+    constexpr std::array edits{"carve", "add", "smooth", "paint", "fill", "undo", "redo"};
+    constexpr std::array plays{"play", "pause", "step", "seek", "loop"};
+    if (std::ranges::find(edits, name) != edits.end()) (void)now.editor();
+    if (std::ranges::find(plays, name) != plays.end()) (void)now.player();
     if (name == "carve" || name == "add" || name == "smooth" || name == "paint") {
         return stroke(words.as(name + " X,Y,Z[:X,Y,Z] RADIUS [VALUE]"), volume);
     }

@@ -112,6 +112,7 @@ Request LiveCommands::from_words(std::string_view line) {
     const CommandWords words(std::move(all), name.empty() ? "a command" : name + " VALUE");
     words.expect(1, words.count());
     if (name == "brush") {
+        (void)data_->editor();  // which a sequence does not have
         return take_up(
             brush_from(words.as("brush KIND RADIUS|tool[:BEYOND] [RATE [VALUE]], or brush off"),
                        field_.volume()));

@@ -9,10 +9,10 @@
 
 namespace palpate::app {
 
-void RequestQueue::put(Work work) {
+void RequestQueue::put(Work work, bool is_scripted) {
     {
         const std::scoped_lock lock(mutex_);
-        waiting_.push_back(std::move(work));
+        waiting_.push_back({std::move(work), is_scripted});
     }
     changed_.notify_all();
 }
@@ -35,16 +35,16 @@ void RequestQueue::end() {
     if (thread_.joinable()) thread_.join();
 }
 
-std::string RequestQueue::unsaved() const {
+std::string RequestQueue::problem() const {
     const std::scoped_lock lock(mutex_);
-    return unsaved_;
+    return problem_;
 }
 
 void RequestQueue::run(const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     while (changed_.wait(lock, stop, [&] { return !waiting_.empty(); })) {
         if (stop.stop_requested()) return;
-        const Work next = std::move(waiting_.front());
+        const Waiting next = std::move(waiting_.front());
         waiting_.pop_front();
         busy_ = true;
         lock.unlock();
@@ -55,16 +55,16 @@ void RequestQueue::run(const std::stop_token& stop) {
     }
 }
 
-void RequestQueue::do_one(const Work& work, const std::stop_token& stop) {
+void RequestQueue::do_one(const Waiting& one, const std::stop_token& stop) {
     try {
-        say(work(stop), false);
+        say(one.work(stop), false);
     } catch (const io::Cancelled&) {  // the session ends
-    } catch (const io::OutputError& e) {
-        say(std::string("palpate: ") + e.what(), true);
-        const std::scoped_lock lock(mutex_);
-        unsaved_ = e.what();
     } catch (const std::exception& e) {
-        say(e.what(), true);
+        const bool is_unsaved = dynamic_cast<const io::OutputError*>(&e) != nullptr;
+        say((is_unsaved ? "palpate: " : "") + std::string(e.what()), true);
+        if (!is_unsaved && !one.is_scripted) return;
+        const std::scoped_lock lock(mutex_);
+        problem_ = e.what();
     }
 }
 

@@ -22,7 +22,8 @@ class RequestQueue {
   public:
     RequestQueue() : thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
-    void put(Work work);
+    /// `is_scripted`: problem() tells if it fails. A person sees the message.
+    void put(Work work, bool is_scripted = false);
     struct Message {
         std::string text;
         bool is_problem;
@@ -33,19 +34,24 @@ class RequestQueue {
     void finish();
     /// Stops the work under way, waits for its end and drops the rest.
     void end();
-    /// Why a volume could not be written; empty if all could.
-    std::string unsaved() const;
+    /// Why a volume could not be written, or something scripted could not be done; empty if all
+    /// could.
+    std::string problem() const;
 
   private:
     void run(const std::stop_token& stop);
-    void do_one(const Work& work, const std::stop_token& stop);
+    struct Waiting {
+        Work work;
+        bool is_scripted;
+    };
+    void do_one(const Waiting& one, const std::stop_token& stop);
     void say(const std::string& text, bool is_problem);
 
     mutable std::mutex mutex_;
     std::condition_variable_any changed_;
-    std::deque<Work> waiting_;
+    std::deque<Waiting> waiting_;
     std::vector<Message> messages_;
-    std::string unsaved_;
+    std::string problem_;
     bool busy_ = false;
     std::jthread thread_;  // last: it uses all of the above
 };

@@ -33,7 +33,7 @@ bool RunTerminal::update() {
         std::ranges::all_of(now_, [](const auto& now) { return now.has_value(); });
     if (!all_begun && std::ranges::none_of(hands_, &LiveHand::has_failed)) return true;
     // The first comes last, which has what is for none by itself: the end.
-    for (std::size_t i = hands_.size(); i-- > 0;) {
+    for (std::size_t i = is_ending_ ? 0 : hands_.size(); i-- > 0;) {
         if (now_[i] && !obey_due(i)) return false;
     }
     if (now_.front() && !serve(*now_.front())) return false;
@@ -46,10 +46,11 @@ bool RunTerminal::update() {
     if (rounds_ % 25 == 0) watch_files();
     show_line();
     if (options_.unpaced) queue_.finish();  // what was asked for takes no time of the session
-    const bool over = std::ranges::any_of(now_, [this](const auto& now) {
+    is_ending_ = std::ranges::any_of(now_, [this](const auto& now) {
         return now && options_.seconds > 0 && now->session.tick.time >= options_.seconds;
     });
-    return !over && !are_all_over();
+    if (are_all_over()) return false;
+    return !is_ending_ || is_any_waiting();  // what came before the end is felt, and recorded
 }
 
 std::string RunTerminal::finish() {
@@ -58,7 +59,7 @@ std::string RunTerminal::finish() {
     print_messages();
     watch_files();
     tell_what_was_left_out();
-    return queue_.unsaved();
+    return queue_.problem();
 }
 
 void RunTerminal::note(const std::string& text) const {
@@ -96,7 +97,7 @@ bool RunTerminal::obey_due(std::size_t number) {
         const Request& request = hand.requests[hand.next].request;
         const bool ends = std::holds_alternative<Quit>(request);
         if (ends && is_any_waiting()) return true;  // first what came before
-        const Obeyed obeyed = obey(request, hand, *now_[number]);
+        const Obeyed obeyed = obey(request, hand, *now_[number], true);
         if (obeyed == Obeyed::quit) return false;
         if (obeyed == Obeyed::yes) continue;
         // Once, however many rounds they wait.
@@ -133,27 +134,30 @@ bool RunTerminal::press(char key) {
 }
 
 /// Throws std::invalid_argument, and run::QueueFull.
-void RunTerminal::carry_out(const Request& request, LiveHand& hand, const Snapshot& now) {
+void RunTerminal::carry_out(const Request& request, LiveHand& hand, const Snapshot& now,
+                            bool is_scripted) {
     const Overloaded how{
         [](Quit) {},
         [&](Help) { note(LiveCommands::key_help()); },
         [&](const DataRequest& data) {
             const double isovalue = now.session.tick.proxy.isovalue;
-            queue_.put([&run = *hand.run, data, isovalue](const std::stop_token& stop) {
+            const auto work = [&run = *hand.run, data, isovalue](const std::stop_token& stop) {
                 const auto until_stop = [&stop](double) {
                     if (stop.stop_requested()) throw io::Cancelled{};
                 };
                 return data(run.data(), run.field_now(), isovalue, until_stop);
-            });
+            };
+            queue_.put(work, is_scripted);
         },
         [&](const Command& command) { hand.run->send(command); },
     };
     std::visit(how, request);
 }
 
-RunTerminal::Obeyed RunTerminal::obey(const Request& request, LiveHand& hand, const Snapshot& now) {
+RunTerminal::Obeyed RunTerminal::obey(const Request& request, LiveHand& hand, const Snapshot& now,
+                                      bool is_scripted) {
     try {
-        carry_out(request, hand, now);
+        carry_out(request, hand, now, is_scripted);
     } catch (const run::QueueFull&) {
         return Obeyed::no_room;
     } catch (const std::invalid_argument& e) {
@@ -162,17 +166,27 @@ RunTerminal::Obeyed RunTerminal::obey(const Request& request, LiveHand& hand, co
     return std::holds_alternative<Quit>(request) ? Obeyed::quit : Obeyed::yes;
 }
 
-/// After the end. Those that were not due yet were not to be carried out.
+/// After the end. What follows `quit` was not to be carried out.
 void RunTerminal::tell_what_was_left_out() const {
-    std::int64_t count = 0;
+    std::size_t left = 0;
+    std::int64_t unfelt = 0;
     for (const LiveHand& hand : hands_) {
-        const bool quits = hand.next < hand.requests.size() &&
-                           std::holds_alternative<Quit>(hand.requests[hand.next].request);
-        const auto now = hand.run->snapshot();
-        count += now && !quits ? hand.left_over(now->session.tick.time) : hand.run->waiting();
+        unfelt += hand.run->waiting();
+        const std::size_t next = hand.next;
+        const bool quits = next < hand.requests.size() &&
+                           std::holds_alternative<Quit>(hand.requests[next].request);
+        if (!quits && !interrupted()) left += hand.requests.size() - next;
     }
-    if (count == 0) return;
-    note(fmt::format("{} commands that were due were not carried out before the end", count));
+    if (left > 0) {
+        note(fmt::format("{} not carried out before the end",
+                         left == 1 ? "1 command was" : fmt::format("{} commands were", left)));
+    }
+    if (unfelt > 0) {
+        note(fmt::format(
+            "{} not felt before the end: a recording does not have {}",
+            unfelt == 1 ? "the last change was" : fmt::format("the last {} changes were", unfelt),
+            unfelt == 1 ? "it" : "them"));
+    }
 }
 
 /// Reports when the status of the device changes, or its problem.

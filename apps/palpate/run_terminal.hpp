@@ -23,8 +23,7 @@ class RunTerminal {
 
     /// One round, every 10 ms of the session; false once the session is to end.
     bool update();
-    /// Waits for the requests so far, except after Ctrl-C. Returns why a volume could not be
-    /// written; empty if all could.
+    /// Waits for the requests so far, except after Ctrl-C. Returns RequestQueue::problem().
     std::string finish();
 
   private:
@@ -45,8 +44,10 @@ class RunTerminal {
     bool obey_due(std::size_t number);
     bool serve(const Snapshot& now);
     bool press(char key);
-    void carry_out(const Request& request, LiveHand& hand, const Snapshot& now);
-    Obeyed obey(const Request& request, LiveHand& hand, const Snapshot& now);
+    void carry_out(const Request& request, LiveHand& hand, const Snapshot& now,
+                   bool is_scripted = false);
+    Obeyed obey(const Request& request, LiveHand& hand, const Snapshot& now,
+                bool is_scripted = false);
     void tell_what_was_left_out() const;
     void watch_device(const LiveHand& hand, Told& told, DeviceStatus status);
     void print_messages();
@@ -58,6 +59,7 @@ class RunTerminal {
     std::vector<std::optional<Snapshot>> now_;
     Remote* remote_;
     RequestQueue queue_;
+    bool is_ending_ = false;  // the time of the session is over
     const RunOptions& options_;
     Keys keys_;
     std::string data_problem_, recording_problem_;  // as told

@@ -103,12 +103,12 @@ std::string save(run::Data& data, const RunOptions& options) {
 /// Saves the volume for --save; without it, warns of edits that are lost.
 void save_as_asked(run::Data& data, const RunOptions& options) {
     const bool quiet = options.source.quiet;
-    if (!options.save.empty() && data.is_streamed() && !data.editor().state().changed) {
+    if (!options.save.empty() && data.is_streamed() && !data.is_edited()) {
         if (!quiet) say("nothing was edited, so nothing was saved\n");
     } else if (!options.save.empty()) {
         const std::string saved = save(data, options);
         if (!quiet) fmt::print(options.json ? stderr : stdout, "{}\n", saved);
-    } else if (!data.is_sequence() && data.editor().state().changed && !quiet) {
+    } else if (!data.is_sequence() && data.editor().state().changed) {
         say("the edits were not saved (--save FILE, or the command save FILE)\n");
     }
 }

@@ -82,11 +82,12 @@ class Saving {
         image_.write_metadata(Range{edits_.minimum(), edits_.maximum()});
         written_ = open_zarr(folder_objects(folder_), folder_.string(), {});
         std::vector<SampleBox> changed;
-        edits_.bricks()->for_each([&](const Index3& brick, const Brick&) {
+        const auto add = [&](const Index3& brick, const Brick&) {
             const Index3 low = brick * Bricks::edge;
             changed.push_back({low, (low + Index3::Constant(Bricks::edge - 1))
                                         .cwiseMin(edits_.geometry().size - Index3::Ones())});
-        });
+        };
+        if (edits_.bricks()) edits_.bricks()->for_each(add);
         for (std::size_t l = 0; l < note_.chunks.size(); ++l) {
             const CoarserGrid& grid = levels_[l];
             if (l > 0 && grid.factor.minCoeff() == 0) changed.clear();  // stays as it was
@@ -258,9 +259,6 @@ void check_edits_place(const fs::path& out, const Opened& opened) {
 void save_edits(const Store& from, const Opened& opened, int level, const Samples& edits,
                 const fs::path& name, const io::Progress& progress) {
     const fs::path out = io::without_slash(name);
-    if (!edits.bricks() || edits.bricks()->size() == 0) {
-        throw std::invalid_argument("nothing was edited, so there is nothing to save");
-    }
     check_edits_place(out, opened);
     io::GrowingFolder folder = io::GrowingFolder::alone(out);
     while_telling(progress, [&](const std::stop_token& stop, std::atomic<double>& made) {

@@ -122,23 +122,30 @@ TEST(Touch, plays_a_numbered_series_and_opens_one_frame_of_it) {
 
 TEST(Touch, says_which_commands_the_data_do_not_allow) {
     const ScratchFolder folder;
-    put_bytes(folder / "c.txt", "0.1 undo\n0.2 play 2\n0.3 quit\n");
+    put_bytes(folder / "c.txt", "0.1 undo\n0.3 quit\n");
     const Outcome still = succeeds(
         folder, "touch " + ball + " --unpaced --device simulated:hand=hold --commands c.txt");
     EXPECT_TRUE(contains(still.err, "nothing to undo")) << still.err;
-    EXPECT_TRUE(contains(still.err, "no sequence")) << still.err;
-    put_bytes(folder / "c.txt", "0.1 brush carve 3\n0.2 quit\n");
-    const Outcome moving =
-        succeeds(folder,
-                 "touch synthetic:beating:16x16x16 --unpaced --device simulated:hand=hold "
-                 "--commands c.txt");
-    EXPECT_TRUE(contains(moving.err, "cannot be edited")) << moving.err;
+    const auto expect_refusal = [&](const std::string& volume, const std::string& line,
+                                    const std::string& why) {
+        put_bytes(folder / "c.txt", line + "\n");
+        expect_failure(palpate(folder, "touch " + volume + " --commands c.txt"), 3, why);
+    };
+    const std::string sequence = "synthetic:beating:16x16x16";
+    for (const char* line : {"0 brush carve 3", "0 brush off", "0 fill 1,1,1 5", "0 redo"}) {
+        expect_refusal(sequence, line, "cannot be edited");
+    }
+    for (const char* line : {"0 play 2", "0 pause", "0 seek 1", "0 step", "0 loop on"}) {
+        expect_refusal(ball, line, "no sequence");
+    }
     for (const char* line :
          {"0 brush carve", "0 brush drill 3", "0 brush carve -3", "0 paint 1,2,3", "0 carve 1,2 3",
-          "0 fill 1,1 5", "0 seek", "0 loop maybe", "0 save", "0 save o.png", "0 play inf",
-          "0 seek nan"}) {
-        put_bytes(folder / "c.txt", std::string(line) + "\n");
-        expect_failure(palpate(folder, "touch " + ball + " --commands c.txt"), 3, "c.txt, line 1");
+          "0 fill 1,1 5", "0 fill 1.5,1,1 5", "0 fill 99,1,1 5", "0 fill -3,0,0:-1,9,9 5", "0 save",
+          "0 save o.png"}) {
+        expect_refusal(ball, line, "c.txt, line 1");
+    }
+    for (const char* line : {"0 seek", "0 loop maybe", "0 play inf", "0 seek nan"}) {
+        expect_refusal(sequence, line, "c.txt, line 1");
     }
     expect_failure(palpate(folder, Words{"touch", ball, "--brush", "carve"}), 2,
                    "brush KIND RADIUS");
@@ -152,6 +159,40 @@ TEST(Touch, says_which_commands_the_data_do_not_allow) {
     // Found out before there is anything to lose.
     expect_failure(palpate(folder, Words{"touch", "moved.nrrd", "--save", "o.tif"}), 2,
                    "no origin and no directions");
+}
+
+TEST(Touch, an_edit_that_fails_gives_status_5_and_what_could_be_done_is_saved) {
+    const ScratchFolder folder;
+    put_bytes(folder / "v.raw", std::string(std::size_t{256} * 256 * 256, '\0'));
+    put_bytes(folder / "c.txt", "0.1 fill 1,1,1:3,3,3 9\n0.2 fill 0,0,0:255,255,255 1\n");
+    const Outcome done = palpate(
+        folder,
+        "touch v.raw --dims 256x256x256 --type uint8 --memory 32MB --unpaced -i 5 --seconds 0.3 "
+        "--device simulated:hand=hold --commands c.txt --save out.zarr");
+    EXPECT_EQ(done.status, 5);
+    EXPECT_TRUE(contains(done.err, "palpate: the edits take more than 8 MB")) << done.err;
+    EXPECT_EQ(palpate(folder, "convert out.zarr out.nrrd").status, 0);
+    const Volume saved = io::read_volume(folder / "out.nrrd").volume;
+    EXPECT_EQ(saved.sample({2, 2, 2}), 9);
+    EXPECT_EQ(saved.sample({4, 4, 4}), 0);
+}
+
+TEST(Touch, an_edit_of_the_last_moment_is_felt_and_recorded_if_it_is_saved) {
+    const ScratchFolder folder;
+    put_bytes(folder / "c.txt", "0.1 fill 1,1,1 7\n0.3 fill 5,5,5 8\n9 fill 6,6,6 8\n");
+    const std::string touch = "touch " + ball +
+                              " --unpaced --device simulated:hand=hold --seconds 0.3 --commands "
+                              "c.txt -q --record r.csv";
+    const Outcome done = palpate(folder, touch + " --save out.nrrd");
+    EXPECT_EQ(done.status, 0) << done.err;
+    EXPECT_TRUE(contains(done.err, "1 command was not carried out before the end")) << done.err;
+    const Volume saved = io::read_volume(folder / "out.nrrd").volume;
+    EXPECT_EQ(saved.sample({5, 5, 5}), 8);
+    EXPECT_NE(saved.sample({6, 6, 6}), 8);
+    const Outcome again = palpate(folder, "replay r.csv --validate");
+    EXPECT_TRUE(contains(again.out, "2 commands")) << again.out;
+    std::filesystem::remove(folder / "r.csv");
+    EXPECT_TRUE(contains(palpate(folder, touch).err, "the edits were not saved"));
 }
 
 /// The first sample that was filled, in the file that the message names, which is removed.

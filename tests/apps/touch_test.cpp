@@ -193,7 +193,7 @@ TEST(Touch, counts_the_commands_that_the_end_left_no_time_for_in_one_line) {
     const std::int64_t carried_out = ticks_of(folder / "r.csv").commands;
     EXPECT_GT(carried_out, 1000);
     EXPECT_TRUE(contains(done.err, std::to_string(300'000 - carried_out) +
-                                       " commands that were due were not carried out"))
+                                       " commands were not carried out before the end"))
         << done.err;
     EXPECT_LT(std::ranges::count(done.err, '\n'), 10) << done.err;
 }

@@ -309,6 +309,30 @@ TEST(Streamed, what_was_edited_is_saved_beside_the_original_and_opens_again) {
     EXPECT_EQ(std::memcmp(bytes.data(), whole.data(), bytes.size()), 0);
 }
 
+TEST(Streamed, what_was_saved_is_saved_under_another_name_too_and_so_is_an_undo) {
+    const BallFile ball;
+    Data data(load(ball.streamed()));
+    const std::filesystem::path one = ball.folder.path() / "one.zarr",
+                                two = ball.folder.path() / "two.zarr";
+    const auto sample_in = [](const std::filesystem::path& saved) {
+        std::vector<std::byte> sample(1);
+        const LoadedVolume again = load(source_from({{"volume", saved.string()}}));
+        again.streamed->store->read(0, {{60, 60, 60}, {60, 60, 60}}, sample, {});
+        return std::to_integer<int>(sample[0]);
+    };
+    const int original = static_cast<int>(ball.volume.sample({60, 60, 60}));
+    ASSERT_NE(original, 7);
+    data.editor().apply(edit::Fill{{{60, 60, 60}, {70, 64, 99}}, 7});
+    (void)data.save(one, {});
+    (void)data.save(two, {});
+    EXPECT_EQ(sample_in(two), 7);
+    EXPECT_TRUE(data.is_edited());
+    data.editor().undo();
+    (void)data.save(one, {});
+    EXPECT_EQ(sample_in(one), original);
+    EXPECT_FALSE(data.is_edited());
+}
+
 TEST(Streamed, edits_are_rescued_where_the_working_folder_has_gone) {
     namespace fs = std::filesystem;
     const BallFile ball;

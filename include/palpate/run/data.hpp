@@ -76,6 +76,8 @@ class Data {
     /// if there is no such folder, no permission, or something else of this name, and as
     /// require_unused() does.
     void check_save_name(const std::string& path) const;
+    /// Whether the samples are others than those that were opened, or than those that were saved.
+    bool is_edited() const;
     /// Throws std::invalid_argument, with the reason, if save() has nothing to write.
     void require_saving() const;
     /// Writes the samples as they are now (for a sequence, those of its moment) to a file or a
