@@ -83,8 +83,7 @@ DataRequest fill(const CommandWords& words, const Volume& volume) {
         words.refuse();
     }
     const SampleBox box{low.cwiseMin(high).cast<int>(), low.cwiseMax(high).cast<int>()};
-    if ((box.high.array() < 0).any() ||
-        (box.low.array() >= volume.geometry().size.array()).any()) {
+    if ((box.high.array() < 0).any() || (box.low.array() >= volume.geometry().size.array()).any()) {
         throw std::invalid_argument("this box lies outside the volume");
     }
     const edit::Fill fill{box, io::level_from_text(words[2], volume)};
