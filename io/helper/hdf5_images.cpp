@@ -3,6 +3,7 @@
 // (https://imagej.net/plugins/bdv, "XML/HDF5 File Format").
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <functional>
 #include <map>
@@ -168,6 +169,15 @@ Stored bdv_type(const Hdf5File& file, int setup, Stored stored) {
     return stored == Stored::int16 ? Stored::uint16 : stored;
 }
 
+/// A fill value of HDF5's type, as the other type of whole numbers means its bits.
+double fill_as(Stored stored, double fill) {
+    if (is_real(stored)) return fill;
+    const double count = std::ldexp(1.0, 8 * static_cast<int>(size_of(stored)));
+    const bool has_sign = !name_of(stored).starts_with('u');
+    if (!has_sign && fill < 0) return fill + count;
+    return has_sign && fill >= count / 2 ? fill - count : fill;
+}
+
 std::string resolutions_of(int setup) {
     return with_number("/s%02d/resolutions", setup);
 }
@@ -277,6 +287,7 @@ ChunkedImage bdv_image(const Hdf5File& file, const std::filesystem::path& path, 
     for (std::size_t l = 0; l < factors.size(); ++l) {
         ImageArray level = file.array(moment + "/" + std::to_string(l) + "/cells");
         level.stored = bdv_type(file, id, level.stored);
+        level.fill = fill_as(level.stored, level.fill);
         place(level, setup.spacing, {0, 0, 0}, factors[l]);
         image.levels.push_back(level);
     }

@@ -295,10 +295,9 @@ std::optional<CountedPages> told_by_axes(const nlohmann::json& told, std::size_t
 void check_shape(const nlohmann::json& told, const TiffPage& page, std::size_t planes,
                  bool is_counted, std::vector<std::string>& notes) {
     if (told.is_null()) return;
-    std::string text;
+    const std::string text = shape_in(told);
     int axes = 0;
     for (const nlohmann::json& size : told["shape"]) {
-        text += (text.empty() ? "" : "x") + std::to_string(size.get<std::uint64_t>());
         axes += size.get<std::uint64_t>() > 1 ? 1 : 0;
     }
     if (samples_in(told) > static_cast<double>(planes) * page.width * page.height) {
@@ -388,6 +387,14 @@ nlohmann::json told_by_tifffile(const std::string& description) {
     if (!told.is_object() || !told.contains("shape") || !told["shape"].is_array()) return nullptr;
     const auto is_size = [](const nlohmann::json& size) { return size.is_number_unsigned(); };
     return std::ranges::all_of(told["shape"], is_size) ? told : nullptr;
+}
+
+std::string shape_in(const nlohmann::json& told) {
+    std::string text;
+    for (const nlohmann::json& size : told["shape"]) {
+        text += (text.empty() ? "" : "x") + std::to_string(size.get<std::uint64_t>());
+    }
+    return text;
 }
 
 double samples_in(const nlohmann::json& told) {

@@ -29,6 +29,8 @@ double image_j_planes(const std::string& description);
 
 /// tifffile's description, such as {"shape": [5, 7, 8], "axes": "ZYX"}; null if it is another one.
 nlohmann::json told_by_tifffile(const std::string& description);
+/// Its shape, such as "5x7x8".
+std::string shape_in(const nlohmann::json& told);
 /// How many samples such a description tells of; 0 for null.
 double samples_in(const nlohmann::json& told);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "io/helper/tiff_descriptions.hpp"
 #include "io/helper/tiff_page.hpp"
@@ -60,6 +61,22 @@ std::size_t planes_behind(TIFF* tiff, const fs::path& file, const TiffPage& page
     return static_cast<std::size_t>(told);
 }
 
+/// The series of tifffile that begins at the current page, if one does. Only the beginning of a
+/// description is parsed: there may be a million of them.
+std::optional<TiffSeries> series_at(TIFF* tiff, std::size_t page) {
+    constexpr std::size_t longest = 200;
+    const std::string description = description_of(tiff);
+    const std::size_t end = description.find(']');
+    if (!description.starts_with("{\"shape\"") || end > longest) return {};
+    const nlohmann::json told = told_by_tifffile(description.substr(0, end + 1) + "}");
+    std::uint32_t width = 0, height = 0;
+    TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &width);
+    TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, &height);
+    if (told.is_null() || width == 0 || height == 0) return {};
+    return TiffSeries{page, samples_in(told) / (static_cast<double>(width) * height),
+                      shape_in(told)};
+}
+
 }  // namespace
 
 std::string description_of(TIFF* tiff) {
@@ -84,6 +101,8 @@ TiffPages pages_of(TIFF* tiff, const fs::path& file) {
         if ((kind & FILETYPE_REDUCEDIMAGE) != 0) {
             pages.reduced.push_back(page);
         } else if ((kind & FILETYPE_MASK) == 0) {
+            const auto series = series_at(tiff, pages.whole.size());
+            if (series) pages.series.push_back(*series);
             pages.whole.push_back(page);
         }
         pages.directories.push_back(TIFFCurrentDirOffset(tiff));
@@ -92,6 +111,15 @@ TiffPages pages_of(TIFF* tiff, const fs::path& file) {
     }
     if (!first_tiff_error().empty() || pages.whole.empty()) fail_damaged_tiff(file);
     return pages;
+}
+
+std::vector<std::uint32_t> pages_of_first_series(const TiffPages& pages) {
+    const auto& series = pages.series;
+    const auto is_page = [](const TiffSeries& one) { return one.planes <= 1; };
+    if (series.size() < 2 || series[0].first != 0 || std::ranges::all_of(series, is_page)) {
+        return pages.whole;
+    }
+    return {pages.whole.begin(), pages.whole.begin() + std::ptrdiff_t(series[1].first)};
 }
 
 TiffLayout layout_of(TIFF* tiff, const fs::path& file, std::vector<std::string>& notes) {
@@ -107,7 +135,13 @@ TiffLayout layout_of(TIFF* tiff, const fs::path& file, std::vector<std::string>&
         return layout;
     }
     OmeImage& image = layout.image;
-    image.pages = pages.whole;
+    image.pages = pages_of_first_series(pages);
+    if (image.pages.size() < pages.whole.size()) {
+        notes.push_back("the first of its " + std::to_string(pages.series.size()) +
+                        " series of images was taken, of the shape " + pages.series[0].shape +
+                        " (the second one: " + pages.series[1].shape +
+                        "); save another one in a file of its own to read it");
+    }
     if (pages.whole.size() == 1) {
         const double plane = static_cast<double>(first.width) * first.height;
         const double told = std::max(image_j_planes(description),

@@ -30,13 +30,25 @@ struct TiffLayout {
 TiffLayout layout_of(TIFF* tiff, const std::filesystem::path& file,
                      std::vector<std::string>& notes);
 
+/// Images that tifffile wrote with one call, which describes the first one's page.
+struct TiffSeries {
+    std::size_t first = 0;  ///< of TiffPages::whole
+    double planes = 1;
+    std::string shape;  ///< such as "5x20x30"
+};
+
 /// Every page in the file's list but masks, and which of them are reduced ones; where the
 /// directories of all lie.
 struct TiffPages {
     std::vector<std::uint32_t> whole, reduced;
     std::vector<std::uint64_t> directories;
+    std::vector<TiffSeries> series;
 };
 TiffPages pages_of(TIFF* tiff, const std::filesystem::path& file);
+
+/// The pages of the first of several series, which have nothing to do with each other. Otherwise,
+/// or if each series is one page, as of slices that were written one by one: all of them.
+std::vector<std::uint32_t> pages_of_first_series(const TiffPages& pages);
 
 /// Offsets of the coarser levels of the current page.
 std::vector<std::uint64_t> coarser_levels(TIFF* tiff);

@@ -274,12 +274,14 @@ Result read_folder(const Request& request) {
     const int step = checked_time_step(request, times);
     std::vector<Slice> slices;
     for (const fs::path& file : numbered.times[static_cast<std::size_t>(step)]) {
-        const auto pages = pages_of(open_to_read(file).get(), file).whole;
-        if (pages.size() != 1 && numbered.times[0].size() * numbered.times.size() > 1) {
-            throw Failure(quoted(file) + " has " + std::to_string(pages.size()) +
+        const TiffPages pages = pages_of(open_to_read(file).get(), file);
+        if (pages.whole.size() != 1 && numbered.times[0].size() * numbered.times.size() > 1) {
+            throw Failure(quoted(file) + " has " + std::to_string(pages.whole.size()) +
                           " pages in a folder of slices; give that file alone");
         }
-        for (const std::uint32_t page : pages) slices.push_back({file, page});
+        for (const std::uint32_t page : pages_of_first_series(pages)) {
+            slices.push_back({file, page});
+        }
     }
     std::vector<std::string> notes = numbered.notes;
     const TiffLayout layout = layout_of_folder(slices.front().file, notes);

@@ -85,6 +85,7 @@ Json json_of(const EditsNote& note, const fs::path& out) {
                        {"skip", options.raw->skip},
                        {"big_endian", options.raw->big_endian}};
     }
+    if (!note.guessed.empty()) json["guessed"] = note.guessed;
     if (options.forbidden_is_missing) json["forbidden_is_missing"] = true;
     if (options.spacing) json["spacing"] = list_of(*options.spacing);
     if (!options.orientation.empty()) json["orientation"] = options.orientation;
@@ -108,6 +109,7 @@ EditsNote note_from(const Json& json, const fs::path& folder, const StoreOptions
     }
     note.of = {io::path_from_json(json.at("of")).string(), options};
     note.content = json.value("content", std::string());
+    note.guessed = json.value("guessed", std::string());
     note.chunk = json.value("chunk", note.chunk);
     if (note.chunk < 1) throw std::invalid_argument("chunks without samples");
     note.lacks_secrets = json.contains("secrets") && io::is_web_address(note.of.address) &&
@@ -231,6 +233,13 @@ EditedStore::EditedStore(std::shared_ptr<const Store> original, std::shared_ptr<
         info_.notes.push_back(
             "the edits do not identify their original: they were rescued without it, or are "
             "of an earlier version");
+    }
+    if (!note_.guessed.empty()) {
+        info_.notes.push_back(
+            "how the coarser levels of its original were made cannot be told: each sample above "
+            "an edit is " +
+            std::string(note_.guessed == guessed_mean ? "the mean of finer samples"
+                                                      : "one of the finer samples"));
     }
     info_.address = ours.address;
     info_.channels.clear();

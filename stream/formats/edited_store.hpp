@@ -11,6 +11,9 @@ namespace palpate::stream {
 /// Chunks of one level, cubes of as many samples as their note says.
 using ChunkSet = std::set<Index3, ByPlace>;
 
+/// What EditsNote::guessed says if the original's coarser levels follow no rule that Palpate knows.
+constexpr const char *guessed_mean = "mean", *guessed_single = "single";
+
 /// What a folder of edits says beside its chunks.
 struct EditsNote {
     int chunk = 64;                     ///< samples along each axis
@@ -20,6 +23,7 @@ struct EditsNote {
     std::vector<ChunkSet> chunks = {};  ///< for that level and coarser ones, perhaps not all
     std::string content = {};           ///< of the original: content_of(); empty: not known
     std::string beside = {};            ///< where the original is if it was moved with the edits
+    std::string guessed = {};           ///< how coarser samples above edits were made; or empty
     bool lacks_secrets = false;         ///< its address was saved without password and query
     bool is_whole = false;              ///< all these chunks are stored, also those that are 0
 };

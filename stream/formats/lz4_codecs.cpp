@@ -41,10 +41,14 @@ struct Lz4Block {
     std::uint64_t checksum;
 };
 
-Lz4Block lz4_block_at(std::span<const std::byte> packed) {
+bool begins_with_block(std::span<const std::byte> packed) {
     static constexpr std::string_view magic = "LZ4Block";
-    if (packed.size() < Lz4Block::header_bytes ||
-        std::memcmp(packed.data(), magic.data(), magic.size()) != 0) {
+    return packed.size() >= Lz4Block::header_bytes &&
+           std::memcmp(packed.data(), magic.data(), magic.size()) == 0;
+}
+
+Lz4Block lz4_block_at(std::span<const std::byte> packed) {
+    if (!begins_with_block(packed)) {
         throw DamagedChunk("is no whole stream of lz4 blocks");
     }
     const unsigned method = std::to_integer<unsigned>(packed[8]) & 0xF0U;
@@ -73,6 +77,7 @@ Bytes unlz4(std::span<const std::byte> packed, std::size_t most) {
 
 Bytes unlz4_blocks(std::span<const std::byte> packed, std::size_t most) {
     constexpr std::uint32_t seed = 0x9747B28C, checksum_bits = 0x0FFFFFFF;
+    if (!begins_with_block(packed)) return unlz4(packed, most);
     Bytes out;
     while (true) {
         const Lz4Block block = lz4_block_at(packed);

@@ -48,35 +48,112 @@ SampleBox finer_box(const SampleBox& box, const Index3& factor, const Geometry& 
 
 namespace {
 
+/// The finer samples below a coarser one.
 template <class T>
-T mean_of(double sum, int count) {
-    const double mean = sum / count;
-    if constexpr (std::is_integral_v<T>) return static_cast<T>(std::lround(mean));
-    return static_cast<T>(mean);
+struct Below {
+    std::vector<T> samples;  // x fastest
+    T middle{};
+
+    T first() const { return samples.front(); }
+    double mean() const {
+        double sum = 0;
+        for (const T sample : samples) sum += static_cast<double>(sample);
+        return sum / static_cast<double>(samples.size());
+    }
+    T rounded_mean() const {
+        if constexpr (std::is_integral_v<T>) return static_cast<T>(std::lround(mean()));
+        return static_cast<T>(mean());
+    }
+};
+
+/// Calls visit(below) for each sample of a coarser box.
+template <class T, class Visit>
+void for_each_below(std::span<const std::byte> finer, const SampleBox& finer_box,
+                    const Index3& factor, const SampleBox& box, Visit&& visit) {
+    const auto sample_at = [&](const Index3& at) {
+        T sample;
+        std::memcpy(&sample, finer.data() + place_in(finer_box, at) * sizeof sample, sizeof sample);
+        return sample;
+    };
+    Below<T> below;
+    for_each_index(box, [&](const Index3& at) {
+        const Index3 low = at.cwiseProduct(factor);
+        const Index3 high = (low + factor - Index3::Ones()).cwiseMin(finer_box.high);
+        below.samples.clear();
+        for_each_index({low, high},
+                       [&](const Index3& one) { below.samples.push_back(sample_at(one)); });
+        below.middle = sample_at((low + factor / 2).cwiseMin(high));
+        visit(below);
+    });
+}
+
+/// Rounded to the nearest whole number, or down. Other programs may add floats in another order.
+template <class T>
+bool is_mean(T sample, const Below<T>& below) {
+    const double mean = below.mean(), off = mean - static_cast<double>(sample);
+    if constexpr (std::is_integral_v<T>) return off >= -0.5 && off < 1;
+    return std::abs(off) <= 1e-5 * std::abs(mean) || (std::isnan(mean) && std::isnan(sample));
+}
+
+template <class T>
+bool is_same(T a, T b) {
+    return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
 }  // namespace
 
-void take_means(SampleType type, std::span<const std::byte> finer, const SampleBox& finer_box,
-                const Index3& factor, const SampleBox& box, std::span<std::byte> out) {
+void take_coarser(Coarsening how, SampleType type, std::span<const std::byte> finer,
+                  const SampleBox& finer_box, const Index3& factor, const SampleBox& box,
+                  std::span<std::byte> out) {
     with_type(type, [&](auto zero) {
         using T = decltype(zero);
         std::byte* to = out.data();
-        for_each_index(box, [&](const Index3& at) {
-            const Index3 low = at.cwiseProduct(factor);
-            const Index3 high = (low + factor - Index3::Ones()).cwiseMin(finer_box.high);
-            double sum = 0;
-            for_each_index({low, high}, [&](const Index3& one) {
-                T sample;
-                std::memcpy(&sample, finer.data() + place_in(finer_box, one) * sizeof sample,
-                            sizeof sample);
-                sum += static_cast<double>(sample);
-            });
-            const T value = mean_of<T>(sum, (high - low + Index3::Ones()).prod());
+        for_each_below<T>(finer, finer_box, factor, box, [&](const Below<T>& below) {
+            const T value = how == Coarsening::mean    ? below.rounded_mean()
+                            : how == Coarsening::first ? below.first()
+                                                       : below.middle;
             std::memcpy(to, &value, sizeof value);
             to += sizeof value;
         });
     });
+}
+
+void take_means(SampleType type, std::span<const std::byte> finer, const SampleBox& finer_box,
+                const Index3& factor, const SampleBox& box, std::span<std::byte> out) {
+    take_coarser(Coarsening::mean, type, finer, finer_box, factor, box, out);
+}
+
+void CoarseningSeen::look(SampleType type, std::span<const std::byte> finer,
+                          const SampleBox& finer_box, const Index3& factor, const SampleBox& box,
+                          std::span<const std::byte> coarser) {
+    with_type(type, [&](auto zero) {
+        using T = decltype(zero);
+        const std::byte* from = coarser.data();
+        for_each_below<T>(finer, finer_box, factor, box, [&](const Below<T>& below) {
+            T stored;
+            std::memcpy(&stored, from, sizeof stored);
+            from += sizeof stored;
+            const auto is_stored = [&](T sample) { return is_same(sample, stored); };
+            const auto is_first = [&](T sample) { return is_same(sample, below.first()); };
+            all_first_ = all_first_ && is_stored(below.first());
+            all_middle_ = all_middle_ && is_stored(below.middle);
+            all_below_ = all_below_ && std::ranges::any_of(below.samples, is_stored);
+            if (std::ranges::all_of(below.samples, is_first)) return;
+            ++telling_;
+            means_ += is_mean(stored, below) ? 1 : 0;
+        });
+    });
+}
+
+bool CoarseningSeen::is_known() const {
+    return telling_ > 0 && (all_first_ || all_middle_ || 2 * means_ > telling_);
+}
+
+Coarsening CoarseningSeen::found() const {
+    if (all_first_) return Coarsening::first;
+    if (all_middle_) return Coarsening::middle;
+    const bool are_means = 2 * means_ > telling_;
+    return all_below_ && !are_means ? Coarsening::first : Coarsening::mean;
 }
 
 }  // namespace palpate::stream

@@ -22,6 +22,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Chunks of each level whose stored samples are compared with finer ones.
+constexpr std::size_t most_examined = 2;
+
 /// The levels from one on, each with how many samples of the one before make one of it; zeros where
 /// that is not a whole number.
 std::vector<CoarserGrid> levels_from(const StoreInfo& info, int level) {
@@ -81,26 +84,67 @@ class Saving {
     EditsNote run() {
         image_.write_metadata(Range{edits_.minimum(), edits_.maximum()});
         written_ = open_zarr(folder_objects(folder_), folder_.string(), {});
-        std::vector<SampleBox> changed;
-        const auto add = [&](const Index3& brick, const Brick&) {
-            const Index3 low = brick * Bricks::edge;
-            changed.push_back({low, (low + Index3::Constant(Bricks::edge - 1))
-                                        .cwiseMin(edits_.geometry().size - Index3::Ones())});
-        };
-        if (edits_.bricks()) edits_.bricks()->for_each(add);
-        for (std::size_t l = 0; l < note_.chunks.size(); ++l) {
-            const CoarserGrid& grid = levels_[l];
-            if (l > 0 && grid.factor.minCoeff() == 0) changed.clear();  // stays as it was
-            if (l > 0) {
-                for (SampleBox& box : changed) box = coarser_box(box, grid);
-                std::erase_if(changed, [](const SampleBox& box) { return box.empty(); });
-            }
-            write_level(l, changed);
+        const std::vector<std::vector<SampleBox>> touched = touched_boxes();
+        const CoarseningSeen seen = coarsening_of_original(touched);
+        coarsening_ = seen.found();
+        const auto any_coarser = [](const auto& boxes) { return !boxes.empty(); };
+        if (!seen.is_known() && std::any_of(touched.begin() + 1, touched.end(), any_coarser)) {
+            note_.guessed = coarsening_ == Coarsening::mean ? guessed_mean : guessed_single;
         }
+        for (std::size_t l = 0; l < note_.chunks.size(); ++l) write_level(l, touched[l]);
         return std::move(note_);
     }
 
   private:
+    /// The edited bricks, and the samples of each coarser level above them.
+    std::vector<std::vector<SampleBox>> touched_boxes() const {
+        std::vector<std::vector<SampleBox>> touched(1);
+        const auto add = [&](const Index3& brick, const Brick&) {
+            const Index3 low = brick * Bricks::edge;
+            touched[0].push_back({low, (low + Index3::Constant(Bricks::edge - 1))
+                                           .cwiseMin(edits_.geometry().size - Index3::Ones())});
+        };
+        if (edits_.bricks()) edits_.bricks()->for_each(add);
+        while (touched.size() < note_.chunks.size()) {
+            const CoarserGrid& grid = levels_[touched.size()];
+            std::vector<SampleBox> boxes;
+            if (grid.factor.minCoeff() > 0) {  // otherwise it stays as it was
+                for (const SampleBox& box : touched.back()) {
+                    boxes.push_back(coarser_box(box, grid));
+                }
+                std::erase_if(boxes, [](const SampleBox& box) { return box.empty(); });
+            }
+            touched.push_back(std::move(boxes));
+        }
+        return touched;
+    }
+
+    /// Compares stored samples around the edits, in a few chunks of each level.
+    CoarseningSeen coarsening_of_original(const std::vector<std::vector<SampleBox>>& touched) {
+        const auto* edited = dynamic_cast<const EditedStore*>(&from_);
+        const Store& original = edited ? edited->original() : from_;
+        const int finest = level_ + (edited ? edited->note().level : 0);
+        CoarseningSeen seen;
+        for (std::size_t l = 1; l < touched.size(); ++l) {
+            const CoarserGrid& grid = levels_[l];
+            ChunkSet chunks;
+            for (const SampleBox& box : touched[l]) {
+                if (chunks.size() == most_examined) break;
+                chunks.insert(box.low.cwiseQuotient(piece()));
+            }
+            for (const Index3& chunk : chunks) {
+                const int level = static_cast<int>(l);
+                const SampleBox box = image_.box(level, chunk);
+                const SampleBox below = finer_box(box, grid.factor, levels_[l - 1].geometry);
+                Bytes coarser(bytes_of(box, type())), finer(bytes_of(below, type()));
+                original.read(finest + level, box, coarser, stop_);
+                original.read(finest + level - 1, below, finer, stop_);
+                seen.look(type(), finer, below, grid.factor, box, coarser);
+            }
+        }
+        return seen;
+    }
+
     void write_level(std::size_t level, const std::vector<SampleBox>& changed) {
         std::map<Index3, std::vector<SampleBox>, ByPlace> parts;
         for (const auto& chunk : note_.chunks[level]) parts[chunk];
@@ -113,10 +157,14 @@ class Saving {
         for (const auto& [chunk, boxes] : parts) {
             const SampleBox box = image_.box(static_cast<int>(level), chunk);
             Bytes samples(bytes_of(box, type()));
-            const bool is_whole = boxes.size() == 1 && boxes[0] == box;
-            if (!is_whole) from_.read(level_ + static_cast<int>(level), box, samples, stop_);
+            const bool is_new = level == 0 && boxes.size() == 1 && boxes[0] == box;
+            if (!is_new) from_.read(level_ + static_cast<int>(level), box, samples, stop_);
             for (const SampleBox& part : boxes) {
-                const Bytes now = level == 0 ? edited(part) : means(level, part);
+                if (level > 0) {
+                    renew_above_edits(level, part, box, samples);
+                    continue;
+                }
+                const Bytes now = edited(part);
                 copy_box(part, now.data(), box, samples.data(), size_of(type()));
             }
             image_.write(static_cast<int>(level), chunk, samples, true);
@@ -140,23 +188,35 @@ class Saving {
         return samples;
     }
 
-    /// Means of the finer level, in which all changes are written already.
-    Bytes means(std::size_t level, const SampleBox& box) const {
+    /// Computes those samples of a part of a chunk again that lie above changed samples of the
+    /// finer level, in which all changes are written already.
+    void renew_above_edits(std::size_t level, const SampleBox& part, const SampleBox& chunk,
+                           std::span<std::byte> samples) const {
         const CoarserGrid& grid = levels_[level];
-        const Geometry& finer = levels_[level - 1].geometry;
-        const SampleBox wanted = finer_box(box, grid.factor, finer);
-        Bytes below(bytes_of(wanted, type()));
+        const SampleBox wanted = finer_box(part, grid.factor, levels_[level - 1].geometry);
+        Bytes before(bytes_of(wanted, type()));
         const int fine = static_cast<int>(level) - 1;
-        from_.read(level_ + fine, wanted, below, stop_);
-        for_each_piece(piece(), wanted, [&](const auto& chunk, const SampleBox& part) {
-            if (!note_.chunks[level - 1].contains(chunk)) return;
-            Bytes now(bytes_of(part, type()));
-            written_->read(fine, part, now, stop_);
-            copy_box(part, now.data(), wanted, below.data(), size_of(type()));
+        from_.read(level_ + fine, wanted, before, stop_);
+        Bytes now = before;
+        for_each_piece(piece(), wanted, [&](const auto& at, const SampleBox& written) {
+            if (!note_.chunks[level - 1].contains(at)) return;
+            Bytes stored(bytes_of(written, type()));
+            written_->read(fine, written, stored, stop_);
+            copy_box(written, stored.data(), wanted, now.data(), size_of(type()));
         });
-        Bytes samples(bytes_of(box, type()));
-        take_means(type(), below, wanted, grid.factor, box, samples);
-        return samples;
+        Bytes renewed(bytes_of(part, type()));
+        take_coarser(coarsening_, type(), now, wanted, grid.factor, part, renewed);
+        const std::size_t each = size_of(type());
+        for_each_index(part, [&](const Index3& at) {
+            const SampleBox below = finer_box({at, at}, grid.factor, levels_[level - 1].geometry);
+            const bool changed = any_index(below, [&](const Index3& one) {
+                const std::size_t place = place_in(wanted, one) * each;
+                return std::memcmp(before.data() + place, now.data() + place, each) != 0;
+            });
+            if (!changed) return;
+            std::memcpy(samples.data() + place_in(chunk, at) * each,
+                        renewed.data() + place_in(part, at) * each, each);
+        });
     }
 
     SampleType type() const { return from_.info().type; }
@@ -168,6 +228,7 @@ class Saving {
     fs::path folder_;
     EditsNote note_;
     std::vector<CoarserGrid> levels_;
+    Coarsening coarsening_ = Coarsening::mean;
     GrowingImage image_;
     std::shared_ptr<const Store> written_;
     std::atomic<double>& made_;  // of the finest level
@@ -200,6 +261,7 @@ EditsNote note_for(const Store& from, const Opened& opened, int level, const Sam
     const EditsNote& before = edited->note();
     note.of = before.of;
     note.level += before.level;
+    note.guessed = before.guessed;
     note.bounds.minimum = std::min(note.bounds.minimum, before.bounds.minimum);
     note.bounds.maximum = std::max(note.bounds.maximum, before.bounds.maximum);
     for (std::size_t l = 0; l < note.chunks.size(); ++l) {

@@ -208,5 +208,40 @@ TEST(tiff, slices_within_a_page_are_refused_and_never_one_slice) {
     EXPECT_EQ(read_volume(folder / "a.tif").volume.geometry().size[2], 5);
 }
 
+/// Pages of tifffile: for each series its shape and how many pages it has.
+void put_series(const ScratchFolder& folder, const std::vector<std::pair<std::string, int>>& all) {
+    std::vector<TestPage> pages;
+    for (const auto& [shape, count] : all) {
+        for (int i = 0; i < count; ++i) {
+            pages.push_back(counting_page(4 * static_cast<int>(pages.size())));
+            if (i == 0) pages.back().description = "{\"shape\": [" + shape + "]}";
+        }
+    }
+    put_bytes(folder / "a.tif", tiff_bytes(pages));
+}
+
+TEST(tiff, the_first_of_several_series_of_tifffile_is_taken_with_a_note) {
+    const ScratchFolder folder;
+    const auto expect_slices = [&](int slices, const std::string& note) {
+        for (const std::filesystem::path& path : {folder / "a.tif", folder.path()}) {
+            const VolumeFile file = read_volume(path);
+            ASSERT_EQ(file.volume.geometry().size, Index3(4, 3, slices)) << path;
+            for (int z = 0; z < slices; ++z) EXPECT_EQ(page_of(file, z), z);
+            EXPECT_EQ(contains(all_notes(file), "series"), !note.empty()) << all_notes(file);
+            EXPECT_TRUE(contains(all_notes(file), note)) << all_notes(file);
+        }
+    };
+    put_series(folder, {{"4, 3, 4", 4}, {"3, 3, 4", 3}});
+    expect_slices(4,
+                  "the first of its 2 series of images was taken, of the shape 4x3x4 (the "
+                  "second one: 3x3x4)");
+    put_series(folder, {{"3, 4", 1}, {"5, 3, 4", 5}});
+    expect_slices(1, "of the shape 3x4 (the second one: 5x3x4)");
+    put_series(folder, {{"4, 3, 4", 4}, {"3, 4", 1}, {"3, 4", 1}});
+    expect_slices(4, "the first of its 3 series");
+    put_series(folder, {{"3, 4", 1}, {"3, 4", 1}, {"3, 4", 1}});  // written one by one
+    expect_slices(3, "");
+}
+
 }  // namespace
 }  // namespace palpate::io::test

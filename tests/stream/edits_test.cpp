@@ -10,6 +10,7 @@
 
 #include "palpate/io/error.hpp"
 #include "palpate/stream/convert.hpp"
+#include "palpate/stream/growing_image.hpp"
 #include "palpate/stream/loader.hpp"
 #include "palpate/stream/read_files.hpp"
 #include "stream/store_support.hpp"
@@ -109,6 +110,121 @@ TEST(Edits, coarser_levels_are_means_of_what_changed_and_else_as_they_were) {
     }
     EXPECT_GT(changed, 10);
     EXPECT_GT(same, 10);
+}
+
+/// Samples of a coarser level for each 2 x 2 x 2 samples of the finer one, which lies within the
+/// grid.
+template <class Value>
+Volume halved(const Volume& finer, Value&& value_of) {
+    std::vector<std::uint16_t> samples;
+    Geometry grid = finer.geometry();
+    grid.size /= 2;
+    grid.spacing *= 2;
+    for_each_sample(grid, [&](const Index3& at) {
+        samples.push_back(static_cast<std::uint16_t>(value_of(finer, Index3(2 * at))));
+    });
+    return Volume(grid, std::move(samples));
+}
+
+/// Writes the levels of an image, in chunks of 16^3.
+void put_image(const fs::path& folder, const std::vector<Volume>& levels) {
+    std::vector<CoarserGrid> grids;
+    for (const Volume& level : levels) grids.push_back({level.geometry(), Index3(2, 2, 2)});
+    const GrowingImage image(folder, levels[0].type(), grids, {.chunk = 16, .progress = {}});
+    image.write_metadata({});
+    for (int l = 0; l < image.levels(); ++l) {
+        for_each_index({Index3::Zero(), image.chunks(l) - Index3::Ones()}, [&](const Index3& at) {
+            image.write(l, at, box_of(levels[static_cast<std::size_t>(l)], image.box(l, at)));
+        });
+    }
+}
+
+/// One way to make the samples of a coarser level.
+struct Halving {
+    const char* name;
+    double (*value_of)(const Volume& finer, const Index3& first);
+    double (*edited_value_of)(const Volume& finer, const Index3& first);
+    const char* note;  // of the saved edits; empty: none
+};
+
+double sample_at(const Volume& finer, const Index3& at) {
+    return finer.sample(at);
+}
+double sample_behind(const Volume& finer, const Index3& at) {
+    return finer.sample(at + Index3::Ones());
+}
+double mean_at(const Volume& finer, const Index3& at) {
+    double sum = 0;
+    for_each_index({at, at + Index3::Ones()}, [&](const Index3& i) { sum += finer.sample(i); });
+    return std::round(sum / 8);
+}
+double greatest_at(const Volume& finer, const Index3& at) {
+    double greatest = 0;
+    for_each_index({at, at + Index3::Ones()},
+                   [&](const Index3& i) { greatest = std::max(greatest, finer.sample(i)); });
+    return greatest;
+}
+double brighter_at(const Volume& finer, const Index3& at) {
+    return mean_at(finer, at) + 3;
+}
+
+constexpr Halving halvings[] = {
+    {"means", mean_at, mean_at, ""},
+    {"the first", sample_at, sample_at, ""},
+    {"the last", sample_behind, sample_behind, ""},
+    {"the greatest", greatest_at, sample_at,
+     "each sample above an edit is one of the finer samples"},
+    {"no rule", brighter_at, mean_at, "each sample above an edit is the mean of finer samples"}};
+
+/// Labels 7 and 300 in stripes.
+Volume stripes() {
+    std::vector<std::uint16_t> labels;
+    const Geometry geometry = grid({56, 48, 40}, {0.5, 0.5, 0.5});
+    for_each_sample(geometry,
+                    [&](const Index3& at) { labels.push_back(at.sum() % 97 < 50 ? 7 : 300); });
+    return Volume(geometry, std::move(labels));
+}
+
+TEST(Edits, only_coarse_samples_above_edited_ones_change_and_as_their_level_was_made) {
+    const edit::Fill fill{{{1, 2, 3}, {9, 8, 7}}, 5};
+    for (const Volume& finest :
+         {noise_of(SampleType::uint16, stripes().geometry(), 31), stripes()}) {
+        for (const Halving& halving : halvings) {
+            SCOPED_TRACE(halving.name);
+            ScratchFolder folder;
+            const fs::path path = folder.path() / "original.zarr",
+                           out = folder.path() / "edits.zarr";
+            std::vector<Volume> levels = {finest};
+            for (int l = 0; l < 2; ++l) levels.push_back(halved(levels.back(), halving.value_of));
+            put_image(path, levels);
+            const auto store = open_store(path.string());
+            ASSERT_EQ(store->info().levels.size(), 3U);
+            const auto edits =
+                edited(empty_samples(*store, finest, 0), fill, reader_of(*store, 0)).samples;
+            save_edits(*store, {path.string(), {}}, 0, *edits, out, {});
+
+            const auto again = open_store(out.string());
+            const std::string& note = again->info().notes.back();
+            EXPECT_EQ(contains(note, "cannot be told"), halving.note[0] != '\0') << note;
+            EXPECT_TRUE(contains(note, halving.note)) << note;
+            for (std::size_t l = 1; l < 3; ++l) {
+                const Volume now = volume_of(*again, static_cast<int>(l));
+                const Volume finer = volume_of(*again, static_cast<int>(l) - 1);
+                int wrong = 0;
+                for_each_sample(now.geometry(), [&](const Index3& at) {
+                    const SampleBox below{2 * at, 2 * at + Index3::Ones()};
+                    const bool is_above_changes = any_index(below, [&](const Index3& i) {
+                        return finer.sample(i) != levels[l - 1].sample(i);
+                    });
+                    const double right = is_above_changes
+                                             ? halving.edited_value_of(finer, below.low)
+                                             : levels[l].sample(at);
+                    wrong += now.sample(at) == right ? 0 : 1;
+                });
+                EXPECT_EQ(wrong, 0) << "level " << l;
+            }
+        }
+    }
 }
 
 TEST(Edits, edits_of_edits_name_the_first_original) {

@@ -154,6 +154,26 @@ def write_bdv(folder):
     put(f"{folder}/bdv.xml", BDV_XML.encode())
 
 
+def write_bdv_missing(folder):
+    """Chunks of BigDataViewer that are not stored, whose fill value HDF5 keeps with a sign."""
+    kinds = {
+        "plain": {"chunks": (4, 5, 6)},
+        "gzip": {"chunks": (4, 5, 6), "compression": "gzip"},
+        "latest": {"chunks": (4, 5, 6)},
+        "typed": {"chunks": (4, 5, 6)},
+        "contiguous": {},
+    }
+    for name, how in kinds.items():
+        with h5py.File(f"{folder}/missing-{name}.h5", "w", libver="latest" if name == "latest" else None) as file:
+            file["s00/resolutions"] = numpy.array([[1, 1, 1]], "f8")
+            if name == "typed":
+                file["s00"].attrs["dataType"] = "uint16"
+            made = file.create_dataset("t00000/s00/0/cells", SHAPE, "i2", fillvalue=-536, **how)
+            if "chunks" in how:
+                made[0:4, 5:10, 0:17] = samples("u2", (4, 5, 17)).view("i2")
+            expect(folder, f"missing-{name}", made[...].view("u2"))
+
+
 def write_refused(folder):
     def imaris(name, **options):
         return h5py.File(f"{folder}/refused-{name}.ims", "w", **options)
@@ -192,4 +212,4 @@ def write_refused(folder):
         put_extent(file)
 
 
-run((write_kinds, write_image, write_missing, write_bdv, write_refused), lambda file, dataset: h5py.File(file, "r")[dataset][...])
+run((write_kinds, write_image, write_missing, write_bdv, write_bdv_missing, write_refused), lambda file, dataset: h5py.File(file, "r")[dataset][...])

@@ -88,6 +88,15 @@ TEST(Hdf5, a_chunk_that_is_not_stored_has_the_fill_value) {
     EXPECT_TRUE(contains(store->info().notes.at(0), "micrometres were taken"));
 }
 
+TEST(Hdf5, a_fill_value_of_bigdataviewer_loses_its_sign_as_its_samples_do) {
+    for (const std::string name : {"plain", "gzip", "latest", "typed", "contiguous"}) {
+        SCOPED_TRACE(name);
+        const auto store = open_store(hdf5_written() / ("missing-" + name + ".h5"));
+        EXPECT_EQ(store->info().fill, 65000);
+        expect_level(*store, 0, "missing-" + name, Stored::uint16);
+    }
+}
+
 TEST(Hdf5, setups_and_times_of_bigdataviewer_are_channels_and_times_with_the_xml_s_voxels) {
     for (int time = 0; time < 2; ++time) {
         for (int setup = 0; setup < 2; ++setup) {

@@ -22,6 +22,7 @@ COMPRESSORS = {
     "gzip": numcodecs.GZip(5),
     "zlib": numcodecs.Zlib(5),
     "zstd": numcodecs.Zstd(3),
+    "lz4": numcodecs.LZ4(),
     "blosc-lz4": numcodecs.Blosc("lz4", 5, numcodecs.Blosc.SHUFFLE),
     "blosc-zstd": numcodecs.Blosc("zstd", 5, numcodecs.Blosc.BITSHUFFLE),
 }

@@ -41,7 +41,7 @@ TEST(N5, every_type_and_compression_reads_as_another_program_wrote_it_whole_bloc
         expect_samples(*store, 0, name, stored_in(name));
         ++stores;
     }
-    EXPECT_EQ(stores, 28 + 12);
+    EXPECT_EQ(stores, 31 + 12);
 }
 
 TEST(N5, levels_have_the_scales_and_places_of_each_programs_attributes) {

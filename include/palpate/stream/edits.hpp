@@ -31,7 +31,8 @@ void check_edits_name(const std::filesystem::path& out);
 void check_edits_place(const std::filesystem::path& out, const Opened& opened);
 
 /// Writes `edits`, samples of a level of the store `from`, to the folder `out`: the changed chunks
-/// of that level, and those of the coarser levels as means of them. The folder names its original.
+/// of that level, and those of the coarser levels. Coarser samples above edited ones are made as
+/// those of the original are, and the others stay as they were. The folder names its original.
 /// If `from` consists of saved edits, this is the original of those, and the earlier edits are
 /// included. The folder is OME-Zarr 0.5, in which other programs see 0 in all unedited chunks. It
 /// is first made under another name, and then replaces an older folder of edits, and nothing else,
