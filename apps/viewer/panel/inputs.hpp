@@ -16,12 +16,15 @@ namespace palpate::viewer {
 QString number_text(double value, int digits = 6);
 /// A whole number in groups of three, with narrow spaces: every language reads it alike.
 QString count_text(double whole);
-/// Nothing for a text that is no number.
-std::optional<double> number_from(const QString& text);
+/// The number that a person typed, with a decimal point or a decimal comma and without groups of
+/// digits. Nothing for a text that is no number.
+std::optional<double> number_from(QString text);
 
-/// Shows up to seven significant digits but keeps the whole value. A typed value counts at Enter or
-/// when the focus leaves. The wheel scrolls the panel unless the box has the focus, so that
-/// scrolling never changes a force. "inf" and "-inf" are numbers where `set_infinite(true)`.
+/// Shows up to seven significant digits but keeps the whole
+/// value. A typed value counts at Enter or when the focus leaves. The wheel scrolls the panel
+/// unless the box has the focus, so that scrolling never changes a force. "inf" and "-inf" are
+/// numbers where `set_infinite(true)`. A comma is a decimal point, in every language. A text with
+/// several of them is no number, and Enter restores the old one.
 class NumberBox : public QDoubleSpinBox {
     Q_OBJECT
 

@@ -13,7 +13,6 @@
 #include <QLineEdit>
 #include <QPushButton>
 #include <QSlider>
-#include <QSpinBox>
 #include <QTableWidget>
 
 #include <algorithm>
@@ -305,7 +304,7 @@ class StoreDialog : public QWidget {
                                tr("Reads which levels, channels and times there are"));
     QComboBox* level_ = named(new QComboBox, "store_level");
     QComboBox* channel_ = named(new QComboBox, "store_channel");
-    QSpinBox* time_ = named(new QSpinBox, "store_time");
+    NumberBox* time_ = named(new NumberBox, "store_time");
     QCheckBox* all_times_ = named(new QCheckBox(tr("All, as a sequence")), "store_all_times",
                                   tr("Plays them; each is read whole at this level"));
     QCheckBox* forbidden_ =
@@ -337,6 +336,8 @@ void StoreDialog::add_rows() {
     add_row(*form, tr("Level"), level_,
             tr("The level of detail that is felt, and the finest that is seen; 0 is the finest"));
     add_row(*form, tr("Channel"), channel_, tr("Of an image with several"));
+    time_->setDecimals(0);
+    time_->setRange(0, 0);
     add_row(*form, tr("Time"), row_of({time_, all_times_}, 0),
             tr("The moment of an image with several, from 0"));
     add_row(*form, tr("Missing pieces"), forbidden_,
@@ -448,7 +449,7 @@ run::Source StoreDialog::source() const {
     if (store.all_times) store.loader.whole_process = store.loader.coarse_first = false;
     run::Source source;
     source.from = std::move(store);
-    if (time_->maximum() > 0 && !store.all_times) source.frame = time_->value();
+    if (time_->maximum() > 0 && !store.all_times) source.frame = static_cast<int>(time_->value());
     return source;
 }
 

@@ -8,10 +8,10 @@
 #include <QLineEdit>
 #include <QPointer>
 #include <QPushButton>
-#include <QSpinBox>
 #include <QStatusBar>
 #include <filesystem>
 
+#include "apps/viewer/panel/inputs.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "palpate/stream/convert.hpp"
 #include "stream/volume_server.hpp"
@@ -374,7 +374,7 @@ TEST_F(Streaming, of_several_levels_channels_and_times_another_is_chosen_while_o
                      !dialog->findChild<QLineEdit*>("store_address")->isReadOnly());
         auto* levels = dialog->findChild<QComboBox*>("store_level");
         auto* channels = dialog->findChild<QComboBox*>("store_channel");
-        auto* times = dialog->findChild<QSpinBox*>("store_time");
+        auto* times = dialog->findChild<NumberBox*>("store_time");
         EXPECT_TRUE(channels->isEnabled() && times->isEnabled());
         const auto pick = [](QComboBox& box, int row) {
             box.setFocus();
@@ -419,7 +419,7 @@ TEST_F(Streaming, all_times_play_and_one_of_them_is_felt_again) {
         auto* times = dialog->findChild<QCheckBox*>("store_all_times");
         EXPECT_EQ(times->isChecked(), !all) << "as it is felt now";
         QTest::mouseClick(times, Qt::LeftButton, {}, QPoint(8, times->height() / 2));
-        EXPECT_EQ(dialog->findChild<QSpinBox*>("store_time")->isEnabled(), !all);
+        EXPECT_EQ(dialog->findChild<NumberBox*>("store_time")->isEnabled(), !all);
         if (all) dialog->grab().save(QString("%1/all-times-dialog.png").arg(PALPATE_PICTURES));
         QTest::mouseClick(open, Qt::LeftButton);
         wait_until([&] {
