@@ -3090,6 +3090,22 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         </translation>
     </message>
     <message>
+        <source>frozen</source>
+        <translation>eingefroren</translation>
+    </message>
+    <message>
+        <source>clutched</source>
+        <translation>gekuppelt</translation>
+    </message>
+    <message>
+        <source>the motion has ended</source>
+        <translation>Bewegung ist zu Ende</translation>
+    </message>
+    <message>
+        <source>data is being read</source>
+        <translation>Daten werden gelesen</translation>
+    </message>
+    <message>
         <source>no input from the device</source>
         <translation>keine Eingabe vom Gerät</translation>
     </message>
