@@ -745,6 +745,10 @@ Der Schieber endet, wo Gerät und Regelkreis sie nicht mehr stabil wiedergeben k
         <translation>die Hand ist an ihrem Ende angekommen</translation>
     </message>
     <message>
+        <source>The simulated or recorded hand has come to its end</source>
+        <translation>Die simulierte oder aufgezeichnete Hand ist an ihrem Ende angekommen</translation>
+    </message>
+    <message>
         <source>Devices; grey: not found, the tip says what was looked for</source>
         <translation>Geräte; grau: nicht gefunden, der Hinweis sagt, wonach gesucht wurde</translation>
     </message>
@@ -1112,6 +1116,10 @@ Der Schieber endet, wo Gerät und Regelkreis sie nicht mehr stabil wiedergeben k
     <message>
         <source>The volume hangs on the hand: C puts it down</source>
         <translation>Das Volumen hängt an der Hand: C setzt es ab</translation>
+    </message>
+    <message>
+        <source>The hand has come to its end: connect it again under Device</source>
+        <translation>Die Hand ist an ihrem Ende angekommen: unter Gerät erneut verbinden</translation>
     </message>
     <message>
         <source>Withdraw a little to feel forces again</source>

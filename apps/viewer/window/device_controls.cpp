@@ -352,6 +352,9 @@ void DeviceControls::observe(const Snapshot& now) {
     const DeviceStatus status = now.session.device.status;
     const QString problem = QString::fromStdString(live->device_problem());
     if (told_ == status && problem_->text() == problem) return;
+    if (status == DeviceStatus::finished && told_ != status) {
+        messages_.show_done(tr("The simulated or recorded hand has come to its end"));
+    }
     told_ = status;
     show_device(live->device(), status, problem);
 }
