@@ -77,7 +77,7 @@ void NumberBox::show_value(double value) {
 }
 
 QString NumberBox::textFromValue(double value) const {
-    return number_text(value, 7);
+    return number_text(value, digits_);
 }
 
 QString NumberBox::bare(const QString& text) const {

@@ -1331,7 +1331,7 @@ Das Volumen wird neu gelesen; Änderungen gehen verloren.</translation>
     </message>
     <message>
         <source>No layers: one surface</source>
-        <translation>Keine Schichten: eine Oberfläche</translation>
+        <translation>Keine Schichten</translation>
     </message>
     <message>
         <source>The surface of the isovalue is felt</source>

@@ -205,6 +205,9 @@ void DeviceControls::make_controls() {
                           [this](double to) { effect_.request(command::Scale{to}); }});
     scale->setSuffix(" mm/mm");
     scale->setSingleStep(0.1);
+    scale->set_digits(4);
+    scale->setMinimumWidth(fontMetrics().horizontalAdvance("00.000 mm/mm") +
+                           2 * fontMetrics().height());
     auto* state = row_of({dot_, state_}, 1);
     state->layout()->setSpacing(6);
     auto* form = form_in();
