@@ -371,6 +371,7 @@ StoreDialog::StoreDialog(const std::optional<run::StoreSource>& known, int time,
         look();
     }
     show_found();
+    if (!known) address_->setFocus();
 }
 
 void StoreDialog::look() {

@@ -314,6 +314,17 @@ TEST_F(Streaming, an_address_is_typed_looked_up_and_felt_and_the_window_says_wha
     EXPECT_EQ(QSettings().value("recent").toStringList().value(0), address);
 }
 
+TEST_F(Streaming, an_address_is_typed_at_once) {
+    press(Qt::Key_L, Qt::ControlModifier);
+    auto& line = part<QLineEdit>("store_address");
+    activate(line);
+    ASSERT_TRUE(line.hasFocus());
+    QTest::keyClicks(QApplication::focusWidget(), "http://127.0.0.1:1/image.zarr");
+    QTest::keyClick(&line, Qt::Key_Return);
+    auto& verdict = part<QLabel>("store_verdict");
+    wait_until([&] { return verdict.text().contains("127.0.0.1"); });
+}
+
 TEST_F(Streaming, a_silent_server_is_left_at_once_when_its_dialog_or_the_window_closes) {
     for (const bool closes_window : {false, true}) {
         support::SilentServer server;
