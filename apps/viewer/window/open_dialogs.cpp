@@ -298,6 +298,7 @@ class StoreDialog : public QWidget {
     void look();
     void take(const std::shared_ptr<Found>& found);
     void show_found();
+    void tell(const QString& verdict);
 
     QLineEdit* address_ = named(new QLineEdit, "store_address");
     QPushButton* look_ = named(new QPushButton(tr("Look it up")), "store_look",
@@ -382,7 +383,7 @@ void StoreDialog::look() {
     looking_ = found;
     found_.reset();
     show_found();
-    verdict_->setText(tr("Looking …"));
+    tell(tr("Looking …"));
     worker_.start(
         [found, address, is_known = address == known_.address](const io::Progress& progress) {
             try {
@@ -408,7 +409,16 @@ void StoreDialog::take(const std::shared_ptr<Found>& found) {
     if (found != looking_ || !worker_.ended()) return;
     if (found->problem.isEmpty()) found_ = found;
     show_found();
-    if (!found->problem.isEmpty()) verdict_->setText(found->problem);
+    if (!found->problem.isEmpty()) tell(found->problem);
+}
+
+/// A dialog does not grow by itself when a text needs more lines.
+void StoreDialog::tell(const QString& verdict) {
+    verdict_->setText(verdict);
+    QWidget& dialog = *window();
+    if (!dialog.isVisible()) return;  // it takes the size that it needs when it is shown
+    layout()->activate();             // tells the layout of the dialog that the text has changed
+    dialog.resize(dialog.width(), std::max(dialog.height(), dialog.heightForWidth(dialog.width())));
 }
 
 void StoreDialog::show_found() {
@@ -436,7 +446,7 @@ void StoreDialog::show_found() {
     time_->setValue(first_time_);
     all_times_->setEnabled(info.times > 1);
     time_->setEnabled(info.times > 1 && !all_times_->isChecked());
-    verdict_->setText(QString::fromStdString(info.format));
+    tell(QString::fromStdString(info.format));
     accept_->setFocus();
 }
 

@@ -314,15 +314,21 @@ TEST_F(Streaming, an_address_is_typed_looked_up_and_felt_and_the_window_says_wha
     EXPECT_EQ(QSettings().value("recent").toStringList().value(0), address);
 }
 
-TEST_F(Streaming, an_address_is_typed_at_once) {
+TEST_F(Streaming, an_address_is_typed_at_once_and_a_long_failure_is_read_whole) {
     press(Qt::Key_L, Qt::ControlModifier);
     auto& line = part<QLineEdit>("store_address");
     activate(line);
     ASSERT_TRUE(line.hasFocus());
-    QTest::keyClicks(QApplication::focusWidget(), "http://127.0.0.1:1/image.zarr");
+    QTest::keyClicks(QApplication::focusWidget(),
+                     "http://127.0.0.1:1/a/folder/with/quite/a/long/name/of/an/image/that/nobody/"
+                     "has/ever/put/there/image.zarr");
     QTest::keyClick(&line, Qt::Key_Return);
     auto& verdict = part<QLabel>("store_verdict");
     wait_until([&] { return verdict.text().contains("127.0.0.1"); });
+    handle_events();
+    EXPECT_GT(verdict.heightForWidth(verdict.width()), verdict.fontMetrics().lineSpacing() * 3 / 2)
+        << "more than a line";
+    EXPECT_GE(verdict.height(), verdict.heightForWidth(verdict.width()));
 }
 
 TEST_F(Streaming, a_silent_server_is_left_at_once_when_its_dialog_or_the_window_closes) {
