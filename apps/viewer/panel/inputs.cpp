@@ -51,7 +51,8 @@ QString count_text(double whole) {
     return text;
 }
 
-std::optional<double> number_from(const QString& text) {
+std::optional<double> number_from(QString text) {
+    text.replace(',', '.');
     if (text == "inf" || text == "+inf") return std::numeric_limits<double>::infinity();
     if (text == "-inf") return -std::numeric_limits<double>::infinity();
     bool valid = false;
@@ -76,7 +77,7 @@ void NumberBox::show_value(double value) {
 }
 
 QString NumberBox::textFromValue(double value) const {
-    return number_text(value, 7);
+    return number_text(value, digits_);
 }
 
 QString NumberBox::bare(const QString& text) const {
@@ -95,10 +96,13 @@ double NumberBox::valueFromText(const QString& text) const {
 QValidator::State NumberBox::validate(QString& text, int&) const {
     const QString number = bare(text);
     const std::optional<double> value = number_from(number);
-    if (value && (infinite_ || std::isfinite(*value))) return QValidator::Acceptable;
+    const bool fits =
+        value &&
+        (std::isfinite(*value) ? decimals() > 0 || *value == std::floor(*value) : infinite_);
+    if (fits) return QValidator::Acceptable;
     for (const QChar c : number) {
         const bool letter = c == 'e' || c == 'E' || (infinite_ && QString("inf").contains(c));
-        if (!c.isDigit() && !letter && !QString("+-.").contains(c)) return QValidator::Invalid;
+        if (!c.isDigit() && !letter && !QString("+-.,").contains(c)) return QValidator::Invalid;
     }
     return QValidator::Intermediate;
 }

@@ -16,12 +16,15 @@ namespace palpate::viewer {
 QString number_text(double value, int digits = 6);
 /// A whole number in groups of three, with narrow spaces: every language reads it alike.
 QString count_text(double whole);
-/// Nothing for a text that is no number.
-std::optional<double> number_from(const QString& text);
+/// The number that a person typed, with a decimal point or a decimal comma and without groups of
+/// digits. Nothing for a text that is no number.
+std::optional<double> number_from(QString text);
 
-/// Shows up to seven significant digits but keeps the whole value. A typed value counts at Enter or
-/// when the focus leaves. The wheel scrolls the panel unless the box has the focus, so that
-/// scrolling never changes a force. "inf" and "-inf" are numbers where `set_infinite(true)`.
+/// Shows up to seven significant digits, or as many as set_digits() says, but keeps the whole
+/// value. A typed value counts at Enter or when the focus leaves. The wheel scrolls the panel
+/// unless the box has the focus, so that scrolling never changes a force. "inf" and "-inf" are
+/// numbers where `set_infinite(true)`. A comma is a decimal point, in every language. A text with
+/// several of them is no number, and Enter restores the old one.
 class NumberBox : public QDoubleSpinBox {
     Q_OBJECT
 
@@ -31,6 +34,7 @@ class NumberBox : public QDoubleSpinBox {
     /// Shows a value; emits nothing.
     void show_value(double value);
     void set_infinite(bool allowed) { infinite_ = allowed; }
+    void set_digits(int most) { digits_ = most; }
 
     QString textFromValue(double value) const override;
     double valueFromText(const QString& text) const override;
@@ -41,6 +45,7 @@ class NumberBox : public QDoubleSpinBox {
     QString bare(const QString& text) const;
 
     bool infinite_ = false;
+    int digits_ = 7;
 };
 
 /// Puts a filter on a widget that leaves the wheel to the scroll area unless it has the focus.

@@ -189,11 +189,19 @@ class SessionBar : public EffectForm {
         contact_->clear();
     }
 
+    /// Why there is no force although forces are on; empty: nothing holds them back.
+    static QString reason_of(const Snapshot& now, const std::string& words) {
+        if (now.session.frozen) return tr("frozen");
+        if (now.session.clutched) return tr("clutched");
+        if (now.session.device.status == DeviceStatus::finished) return tr("the motion has ended");
+        if (words == "no input") return tr("no input from the device");
+        if (words == "waiting for data") return tr("data is being read");
+        return waits_for_hand(now) ? tr("withdraw a little") : QString();
+    }
+
     void show_snapshot(const Snapshot& now) {
         const std::string words = app::force_words(now.session.tick);
-        const QString why = words == "no input"   ? tr("no input from the device")
-                            : waits_for_hand(now) ? tr("withdraw a little")
-                                                  : QString();
+        const QString why = reason_of(now, words);
         if (why != std::exchange(waits_, why)) colour_forces();
         refresh();
         const Tick& tick = now.session.tick;

@@ -745,6 +745,10 @@ Der Schieber endet, wo Gerät und Regelkreis sie nicht mehr stabil wiedergeben k
         <translation>die Hand ist an ihrem Ende angekommen</translation>
     </message>
     <message>
+        <source>The simulated or recorded hand has come to its end</source>
+        <translation>Die simulierte oder aufgezeichnete Hand ist an ihrem Ende angekommen</translation>
+    </message>
+    <message>
         <source>Devices; grey: not found, the tip says what was looked for</source>
         <translation>Geräte; grau: nicht gefunden, der Hinweis sagt, wonach gesucht wurde</translation>
     </message>
@@ -1114,6 +1118,10 @@ Der Schieber endet, wo Gerät und Regelkreis sie nicht mehr stabil wiedergeben k
         <translation>Das Volumen hängt an der Hand: C setzt es ab</translation>
     </message>
     <message>
+        <source>The hand has come to its end: connect it again under Device</source>
+        <translation>Die Hand ist an ihrem Ende angekommen: unter Gerät erneut verbinden</translation>
+    </message>
+    <message>
         <source>Withdraw a little to feel forces again</source>
         <translation>Etwas zurückziehen, um wieder Kräfte zu fühlen</translation>
     </message>
@@ -1323,7 +1331,7 @@ Das Volumen wird neu gelesen; Änderungen gehen verloren.</translation>
     </message>
     <message>
         <source>No layers: one surface</source>
-        <translation>Keine Schichten: eine Oberfläche</translation>
+        <translation>Keine Schichten</translation>
     </message>
     <message>
         <source>The surface of the isovalue is felt</source>
@@ -3088,6 +3096,22 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
             <numerusform>%n Punkt des Werkzeugs hält, Drehmoment %1 N mm</numerusform>
             <numerusform>%n Punkte des Werkzeugs halten, Drehmoment %1 N mm</numerusform>
         </translation>
+    </message>
+    <message>
+        <source>frozen</source>
+        <translation>eingefroren</translation>
+    </message>
+    <message>
+        <source>clutched</source>
+        <translation>gekuppelt</translation>
+    </message>
+    <message>
+        <source>the motion has ended</source>
+        <translation>Bewegung ist zu Ende</translation>
+    </message>
+    <message>
+        <source>data is being read</source>
+        <translation>Daten werden gelesen</translation>
     </message>
     <message>
         <source>no input from the device</source>

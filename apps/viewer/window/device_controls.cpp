@@ -205,6 +205,9 @@ void DeviceControls::make_controls() {
                           [this](double to) { effect_.request(command::Scale{to}); }});
     scale->setSuffix(" mm/mm");
     scale->setSingleStep(0.1);
+    scale->set_digits(4);
+    scale->setMinimumWidth(fontMetrics().horizontalAdvance("00.000 mm/mm") +
+                           2 * fontMetrics().height());
     auto* state = row_of({dot_, state_}, 1);
     state->layout()->setSpacing(6);
     auto* form = form_in();
@@ -352,6 +355,9 @@ void DeviceControls::observe(const Snapshot& now) {
     const DeviceStatus status = now.session.device.status;
     const QString problem = QString::fromStdString(live->device_problem());
     if (told_ == status && problem_->text() == problem) return;
+    if (status == DeviceStatus::finished && told_ != status) {
+        messages_.show_done(tr("The simulated or recorded hand has come to its end"));
+    }
     told_ = status;
     show_device(live->device(), status, problem);
 }

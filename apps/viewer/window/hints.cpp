@@ -156,6 +156,9 @@ QString Hints::reason_of(const Snapshot& now) {
     if (!now.forces_on) return tr("Forces are off: the space bar switches them on");
     if (now.session.frozen) return tr("Frozen: F lets hand and proxy move again");
     if (now.session.clutched) return tr("The volume hangs on the hand: C puts it down");
+    if (now.session.device.status == DeviceStatus::finished) {
+        return tr("The hand has come to its end: connect it again under Device");
+    }
     if (waits && waiting_.elapsed() > moment_ms && content_.data()) {
         return waiting_words(content_.data()->streaming());
     }

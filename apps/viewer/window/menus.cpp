@@ -258,13 +258,22 @@ void MainWindow::make_measure_and_cut_menus(QMenu& view) {
                    [this] { measuring_.remove_last(); }, measured},
                   {"measure_remove_all", tr("R&emove all"), "", [this] { measuring_.remove_all(); },
                    measured}});
-    const auto cut = [this](Cut kind) {
-        return [this, kind] { panel_->look_controls().set_cut(kind); };
+    LookControls& look = panel_->look_controls();
+    const auto cut = [this, &look](Cut kind) {
+        return [this, &look, kind](bool on) {
+            look.set_cut(on ? kind : Cut::nothing);
+            actions_.refresh();
+        };
     };
-    actions_.add(submenu(view, "cut", tr("Cut awa&y")),
-                 {{"cut_nothing", tr("&Nothing"), "", cut(Cut::nothing), if_open_},
-                  {"cut_plane", tr("By a &plane that faces you"), "V", cut(Cut::plane), if_open_},
-                  {"cut_box", tr("To a &box"), "Shift+V", cut(Cut::box), if_open_}});
+    const auto is_cut = [&look](Cut kind) {
+        return [&look, kind] { return look.look().cut == kind; };
+    };
+    actions_.add(
+        submenu(view, "cut", tr("Cut awa&y")),
+        {{"cut_nothing", tr("&Nothing"), "", cut(Cut::nothing), if_open_, is_cut(Cut::nothing)},
+         {"cut_plane", tr("By a &plane that faces you"), "V", cut(Cut::plane), if_open_,
+          is_cut(Cut::plane)},
+         {"cut_box", tr("To a &box"), "Shift+V", cut(Cut::box), if_open_, is_cut(Cut::box)}});
 }
 
 void MainWindow::make_view_menu() {

@@ -13,7 +13,6 @@
 #include <QLineEdit>
 #include <QPushButton>
 #include <QSlider>
-#include <QSpinBox>
 #include <QTableWidget>
 
 #include <algorithm>
@@ -299,13 +298,14 @@ class StoreDialog : public QWidget {
     void look();
     void take(const std::shared_ptr<Found>& found);
     void show_found();
+    void tell(const QString& verdict);
 
     QLineEdit* address_ = named(new QLineEdit, "store_address");
     QPushButton* look_ = named(new QPushButton(tr("Look it up")), "store_look",
                                tr("Reads which levels, channels and times there are"));
     QComboBox* level_ = named(new QComboBox, "store_level");
     QComboBox* channel_ = named(new QComboBox, "store_channel");
-    QSpinBox* time_ = named(new QSpinBox, "store_time");
+    NumberBox* time_ = named(new NumberBox, "store_time");
     QCheckBox* all_times_ = named(new QCheckBox(tr("All, as a sequence")), "store_all_times",
                                   tr("Plays them; each is read whole at this level"));
     QCheckBox* forbidden_ =
@@ -337,6 +337,8 @@ void StoreDialog::add_rows() {
     add_row(*form, tr("Level"), level_,
             tr("The level of detail that is felt, and the finest that is seen; 0 is the finest"));
     add_row(*form, tr("Channel"), channel_, tr("Of an image with several"));
+    time_->setDecimals(0);
+    time_->setRange(0, 0);
     add_row(*form, tr("Time"), row_of({time_, all_times_}, 0),
             tr("The moment of an image with several, from 0"));
     add_row(*form, tr("Missing pieces"), forbidden_,
@@ -370,6 +372,7 @@ StoreDialog::StoreDialog(const std::optional<run::StoreSource>& known, int time,
         look();
     }
     show_found();
+    if (!known) address_->setFocus();
 }
 
 void StoreDialog::look() {
@@ -380,7 +383,7 @@ void StoreDialog::look() {
     looking_ = found;
     found_.reset();
     show_found();
-    verdict_->setText(tr("Looking …"));
+    tell(tr("Looking …"));
     worker_.start(
         [found, address, is_known = address == known_.address](const io::Progress& progress) {
             try {
@@ -406,7 +409,16 @@ void StoreDialog::take(const std::shared_ptr<Found>& found) {
     if (found != looking_ || !worker_.ended()) return;
     if (found->problem.isEmpty()) found_ = found;
     show_found();
-    if (!found->problem.isEmpty()) verdict_->setText(found->problem);
+    if (!found->problem.isEmpty()) tell(found->problem);
+}
+
+/// A dialog does not grow by itself when a text needs more lines.
+void StoreDialog::tell(const QString& verdict) {
+    verdict_->setText(verdict);
+    QWidget& dialog = *window();
+    if (!dialog.isVisible()) return;  // it takes the size that it needs when it is shown
+    layout()->activate();             // tells the layout of the dialog that the text has changed
+    dialog.resize(dialog.width(), std::max(dialog.height(), dialog.heightForWidth(dialog.width())));
 }
 
 void StoreDialog::show_found() {
@@ -434,7 +446,7 @@ void StoreDialog::show_found() {
     time_->setValue(first_time_);
     all_times_->setEnabled(info.times > 1);
     time_->setEnabled(info.times > 1 && !all_times_->isChecked());
-    verdict_->setText(QString::fromStdString(info.format));
+    tell(QString::fromStdString(info.format));
     accept_->setFocus();
 }
 
@@ -448,7 +460,7 @@ run::Source StoreDialog::source() const {
     if (store.all_times) store.loader.whole_process = store.loader.coarse_first = false;
     run::Source source;
     source.from = std::move(store);
-    if (time_->maximum() > 0 && !store.all_times) source.frame = time_->value();
+    if (time_->maximum() > 0 && !store.all_times) source.frame = static_cast<int>(time_->value());
     return source;
 }
 

@@ -101,14 +101,26 @@ bool Views::eventFilter(QObject* watched, QEvent* event) {
     const bool twice = event->type() == QEvent::MouseButtonDblClick;
     if (twice || event->type() == QEvent::MouseButtonPress) {
         const auto& mouse = static_cast<const QMouseEvent&>(*event);
-        if (mouse.button() == Qt::LeftButton && follows_double_click(mouse)) return true;
-        if (twice && mouse.button() == Qt::LeftButton && mouse.modifiers() == Qt::NoModifier) {
+        const bool left = mouse.button() == Qt::LeftButton;
+        if (left && follows_double_click(mouse)) return true;
+        if (left && !twice) {
+            crosshair_before_ = shown_.crosshair;
+            follow_before_ = follow_;
+        }
+        if (twice && left && mouse.modifiers() == Qt::NoModifier) {
+            if (watched != scene_) restore_crosshair();
             Q_EMIT double_clicked();
             toggle_alone(static_cast<QWidget*>(watched));
             return true;
         }
     }
     return QWidget::eventFilter(watched, event);
+}
+
+/// The first click of a double click has moved it.
+void Views::restore_crosshair() {
+    set_follow(follow_before_);
+    set(*this, &Shown::crosshair, crosshair_before_);
 }
 
 void Views::toggle_alone(QWidget* pane) {

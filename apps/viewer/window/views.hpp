@@ -79,6 +79,7 @@ class Views : public QWidget {
     void in_all(Tell tell);
     bool follows_double_click(const QMouseEvent& press);
     void choose_crosshair(const Vec3& physical);
+    void restore_crosshair();
     Vec3 on_surface(const Vec3& seen) const;
     void order_panes();
     void show_panes();
@@ -94,6 +95,9 @@ class Views : public QWidget {
     bool slices_shown_ = true;
     Shown shown_;
     bool follow_ = true, touched_ = false;
+    // Before the last press in a slice, for a double click to restore.
+    Vec3 crosshair_before_ = Vec3::Zero();
+    bool follow_before_ = true;
     // The last press of the left button, and whether it was the second of a double click or later.
     ulong pressed_time_ = 0;  // [ms] of the window system
     QPoint pressed_;          // on the screen

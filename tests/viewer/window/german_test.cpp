@@ -13,6 +13,7 @@
 #include <QScrollArea>
 #include <QSet>
 #include <QStatusBar>
+#include <QStyleOption>
 #include <QTabBar>
 #include <QTabWidget>
 #include <QTableWidget>
@@ -149,8 +150,29 @@ class German : public InWindow {
             }
             const bool spoken = button && button->text().size() > 1;  // not a sign
             if (spoken && button->sizeHint().width() > button->width() + 2) cut << button->text();
+            if (const QString text = cut_off_in(*widget); !text.isEmpty()) cut << text;
         }
         return cut;
+    }
+    /// What a number box or the choice of layers shows, if it has more width than its room.
+    static QString cut_off_in(const QWidget& widget) {
+        QString text;
+        QRect room;
+        if (const auto* box = qobject_cast<const QAbstractSpinBox*>(&widget)) {
+            QStyleOptionSpinBox option;
+            option.initFrom(box);
+            room = box->style()->subControlRect(QStyle::CC_SpinBox, &option,
+                                                QStyle::SC_SpinBoxEditField, box);
+            text = box->text();
+        } else if (widget.objectName() == "layers") {
+            const auto& choice = *qobject_cast<const QComboBox*>(&widget);
+            QStyleOptionComboBox option;
+            option.initFrom(&choice);
+            room = choice.style()->subControlRect(QStyle::CC_ComboBox, &option,
+                                                  QStyle::SC_ComboBoxEditField, &choice);
+            text = choice.currentText();
+        }
+        return widget.fontMetrics().horizontalAdvance(text) > room.width() ? text : QString();
     }
 
     std::optional<Translation> translation_;
@@ -187,6 +209,7 @@ TEST_F(German, mnemonics_are_unique_in_every_menu) {
 TEST_F(German, no_label_of_the_panel_is_cut_off_at_the_usual_width) {
     open_german();
     feel_sample();
+    window_->content().effect().request(command::Scale{1.26123});
     auto& tabs = part<QTabWidget>("tabs");
     for (int i = 0; i < tabs.count(); ++i) {
         tabs.setCurrentIndex(i);

@@ -107,6 +107,45 @@ TEST_F(Looking, a_cut_by_key_faces_the_viewer_and_a_session_brings_it_back) {
     wait_until_settled();
 }
 
+TEST_F(Looking, the_key_of_a_cut_removes_it_again) {
+    feel("synthetic:sphere:48x48x48");
+    const auto cut_after = [&](Qt::KeyboardModifiers with) {
+        press(Qt::Key_V, with);
+        wait_until_settled();
+        EXPECT_EQ(part<QComboBox>("cut").currentIndex(), int(look().cut));
+        EXPECT_EQ(part<QAction>("cut_plane").isChecked(), look().cut == Cut::plane);
+        EXPECT_EQ(part<QAction>("cut_box").isChecked(), look().cut == Cut::box);
+        EXPECT_EQ(part<QAction>("cut_nothing").isChecked(), look().cut == Cut::nothing);
+        return look().cut;
+    };
+    EXPECT_EQ(cut_after({}), Cut::plane);
+    EXPECT_EQ(cut_after({}), Cut::nothing);
+    EXPECT_EQ(cut_after(Qt::ShiftModifier), Cut::box);
+    EXPECT_EQ(cut_after({}), Cut::plane) << "the other cut replaces it";
+    EXPECT_EQ(cut_after(Qt::ShiftModifier), Cut::box);
+    EXPECT_EQ(cut_after(Qt::ShiftModifier), Cut::nothing);
+    part<QAction>("cut_nothing").trigger();
+    EXPECT_EQ(look().cut, Cut::nothing);
+    EXPECT_TRUE(part<QAction>("cut_nothing").isChecked());
+}
+
+TEST_F(Looking, a_double_click_on_a_slice_leaves_the_crosshair_where_it_was) {
+    feel("synthetic:sphere:48x48x48");
+    SlicePane& axial = window_->views().slice(2);
+    const Vec3 before = window_->views().shown().crosshair;
+    for (const bool follow : {true, false}) {
+        window_->views().set_follow(follow);
+        const QPoint at(axial.width() / 4, axial.height() / 4);
+        QTest::mouseClick(&axial, Qt::LeftButton, {}, at);
+        EXPECT_NE(window_->views().shown().crosshair, before) << "a click moves it";
+        QTest::mouseDClick(&axial, Qt::LeftButton, {}, at);
+        EXPECT_EQ(window_->views().alone() != nullptr, follow) << "alone, and again all";
+        EXPECT_EQ(window_->views().shown().crosshair, before);
+        EXPECT_EQ(window_->views().follows(), follow);
+        QTest::lastMouseTimestamp += 1000;  // what follows is another double click
+    }
+}
+
 TEST_F(Looking, a_length_and_an_angle_are_measured_in_a_slice_and_kept) {
     feel("synthetic:sphere:48x48x48");
     SlicePane& pane = window_->views().slice(2);

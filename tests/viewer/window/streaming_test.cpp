@@ -8,10 +8,10 @@
 #include <QLineEdit>
 #include <QPointer>
 #include <QPushButton>
-#include <QSpinBox>
 #include <QStatusBar>
 #include <filesystem>
 
+#include "apps/viewer/panel/inputs.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "palpate/stream/convert.hpp"
 #include "stream/volume_server.hpp"
@@ -314,6 +314,23 @@ TEST_F(Streaming, an_address_is_typed_looked_up_and_felt_and_the_window_says_wha
     EXPECT_EQ(QSettings().value("recent").toStringList().value(0), address);
 }
 
+TEST_F(Streaming, an_address_is_typed_at_once_and_a_long_failure_is_read_whole) {
+    press(Qt::Key_L, Qt::ControlModifier);
+    auto& line = part<QLineEdit>("store_address");
+    activate(line);
+    ASSERT_TRUE(line.hasFocus());
+    QTest::keyClicks(QApplication::focusWidget(),
+                     "http://127.0.0.1:1/a/folder/with/quite/a/long/name/of/an/image/that/nobody/"
+                     "has/ever/put/there/image.zarr");
+    QTest::keyClick(&line, Qt::Key_Return);
+    auto& verdict = part<QLabel>("store_verdict");
+    wait_until([&] { return verdict.text().contains("127.0.0.1"); });
+    handle_events();
+    EXPECT_GT(verdict.heightForWidth(verdict.width()), verdict.fontMetrics().lineSpacing() * 3 / 2)
+        << "more than a line";
+    EXPECT_GE(verdict.height(), verdict.heightForWidth(verdict.width()));
+}
+
 TEST_F(Streaming, a_silent_server_is_left_at_once_when_its_dialog_or_the_window_closes) {
     for (const bool closes_window : {false, true}) {
         support::SilentServer server;
@@ -374,7 +391,7 @@ TEST_F(Streaming, of_several_levels_channels_and_times_another_is_chosen_while_o
                      !dialog->findChild<QLineEdit*>("store_address")->isReadOnly());
         auto* levels = dialog->findChild<QComboBox*>("store_level");
         auto* channels = dialog->findChild<QComboBox*>("store_channel");
-        auto* times = dialog->findChild<QSpinBox*>("store_time");
+        auto* times = dialog->findChild<NumberBox*>("store_time");
         EXPECT_TRUE(channels->isEnabled() && times->isEnabled());
         const auto pick = [](QComboBox& box, int row) {
             box.setFocus();
@@ -419,7 +436,7 @@ TEST_F(Streaming, all_times_play_and_one_of_them_is_felt_again) {
         auto* times = dialog->findChild<QCheckBox*>("store_all_times");
         EXPECT_EQ(times->isChecked(), !all) << "as it is felt now";
         QTest::mouseClick(times, Qt::LeftButton, {}, QPoint(8, times->height() / 2));
-        EXPECT_EQ(dialog->findChild<QSpinBox*>("store_time")->isEnabled(), !all);
+        EXPECT_EQ(dialog->findChild<NumberBox*>("store_time")->isEnabled(), !all);
         if (all) dialog->grab().save(QString("%1/all-times-dialog.png").arg(PALPATE_PICTURES));
         QTest::mouseClick(open, Qt::LeftButton);
         wait_until([&] {
