@@ -339,7 +339,7 @@ vtkXMLDataElement* choose_array(vtkXMLDataElement* data, std::vector<std::string
     }
     std::erase_if(arrays, is_ghosts);
     if (arrays.empty()) return nullptr;
-    std::ranges::stable_partition(arrays, [&](vtkXMLDataElement* one) {
+    std::stable_partition(arrays.begin(), arrays.end(), [&](vtkXMLDataElement* one) {
         return attribute(*one, "Name") == attribute(*data, "Scalars");
     });
     const auto found = std::ranges::find_if(

@@ -295,13 +295,13 @@ def test_ctrl_c_ends_the_saving_of_edits_and_they_are_rescued_without_the_server
     subprocess.run([os.environ["PALPATE"], "convert", "-q", "synthetic:sphere:200x200x200", tmp_path / "v.zarr",
                     "--chunk", "64"], check=True)
     save = ["--save", "e.zarr"] if how == "option" else []
-    (tmp_path / "c.txt").write_text("0.1 fill 1,1,1:4,4,4 9\n0.2 play\n"
+    (tmp_path / "c.txt").write_text("0.1 fill 1,1,1:4,4,4 9\n0.2 redo\n"
                                     + ("" if save else "0.3 save e.zarr\n"))
     touch = subprocess.Popen([os.environ["PALPATE"], "touch", serve(tmp_path, SilentAboutMost) + "v.zarr", "--headless",
                               "--normal-priority", "--device", "simulated:hand=hold", "--isovalue", "100",
-                              "--commands", "c.txt", *save, "-q"], cwd=tmp_path,
+                              "--commands", "c.txt", *save], cwd=tmp_path,
                              env={**os.environ, "TMPDIR": str(tmp_path)}, stderr=subprocess.PIPE, text=True)
-    assert any("no sequence" in line for line in touch.stderr)  # so the samples are filled
+    assert any("nothing to redo" in line for line in touch.stderr)  # so the samples are filled
     if how == "option":
         touch.send_signal(signal.SIGINT)  # ends the session, so that saving begins
     live_test.until(lambda: list(tmp_path.glob(".palpate-*.part")))

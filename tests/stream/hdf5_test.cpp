@@ -93,7 +93,7 @@ TEST(Hdf5, a_fill_value_of_bigdataviewer_loses_its_sign_as_its_samples_do) {
         SCOPED_TRACE(name);
         const auto store = open_store(hdf5_written() / ("missing-" + name + ".h5"));
         EXPECT_EQ(store->info().fill, 65000);
-        expect_level(*store, 0, "missing-" + name, Stored::uint16);
+        expect_level(*store, 0, hdf5_written() / ("missing-" + name), Stored::uint16);
     }
 }
 
