@@ -468,6 +468,7 @@ Tick render(Renderer& renderer, const TickInput& device, StepObserver observer, 
     }
     tick.update_ns = clock ? clock() - begin : 0;
     const bool waits = tick.proxy.status == UpdateStatus::waiting;
+    const Vec3 scp = tick.proxy.scp;
     const Penetrability& penetrability = settings.penetrability;
     if (penetrability.on && !settings.tool && !have_surfaces(settings.layers) && !waits) {
         apply_penetrability(penetrability, renderer.field, 1 / settings.transform.scale,
@@ -476,10 +477,14 @@ Tick render(Renderer& renderer, const TickInput& device, StepObserver observer, 
             stretch_again(renderer.layers.spring, tick.proxy, settings.transform.scale, *layers);
         }
     }
+    const bool changed = renderer.force.changed;
+    const bool goes_on = tick.proxy.status != UpdateStatus::done || tick.proxy.scp != scp;
     const ForceResult force =
         render_force(renderer.force, layers ? layers->force : settings.force, settings.device,
                      force_input(renderer, device, tick, layers));
-    renderer.force.changed = waits;  // samples that arrive change the contact
+    // Samples that arrive change the contact. A change goes on while the proxy has not got where it
+    // leads: after an update out of budget, or pressed through a surface.
+    renderer.force.changed = waits || (changed && goes_on);
     if (renderer.layers.covered) tick.proxy.density = value_at(renderer.field, tick.proxy.scp);
     tick.proxy.level = level_at(renderer.field, tick.proxy.scp);
     if (layers) tick.layers = layers->felt;

@@ -150,6 +150,7 @@ class LayersTick {
 
     /// The spring, now that SCP and HIP are where they are.
     void stretch() {
+        gradient_ = gradient();
         force_ = force_now();
         state_.spring.touching &= pulls(update_);
         if (!pulls(update_)) return;

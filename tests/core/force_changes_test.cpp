@@ -58,6 +58,12 @@ void between_frames(Session& session) {
     session.renderer.field.use(
         std::make_shared<const Samples>(std::vector<Frame>{{0, slope(0)}, {1, slope(more)}}));
 }
+/// The steeper the surface, the stiffer it is.
+void stiffness_over_gradient(Session& session) {
+    auto layers = std::make_shared<Layers>(*layers_at(level, 1));
+    (*layers)[HapticProperty::stiffness].gradient.knots = {{0, 0.05}, {2, 0.05}, {30, 4}};
+    session.renderer.settings.layers = std::move(layers);
+}
 std::function<Command(const Session&)> use(std::shared_ptr<const Samples> samples) {
     return [samples](const Session&) { return command::Samples{samples}; };
 }
@@ -108,6 +114,7 @@ std::vector<Change> changes_of_samples() {
     return {
         {"other_samples", true, nothing, use(other)},
         {"edited_samples", true, nothing, use(filled), deep, 20, false},
+        {"edited_samples_under_curves", false, stiffness_over_gradient, use(filled)},
         {"samples_that_come", true, [](Session& s) { s.renderer.field.use(bricks(false)); },
          use(bricks(true)), 80, 50},
         {"moment", true, between_frames, [](auto&) { return command::Moment{1}; }},
@@ -185,6 +192,44 @@ std::string name_of_case(const testing::TestParamInfo<Case>& info) {
     return what + std::string(name_of(field)) + "_" + change.name;
 }
 INSTANTIATE_TEST_SUITE_P(Every, ForceChanges, testing::ValuesIn(all_cases()), name_of_case);
+
+/// What a change leads to takes several ticks where an update runs out of its budget, and where the
+/// proxy is pressed through a surface and meets the next one.
+TEST(ForceChanges, are_bounded_until_the_proxy_has_got_where_they_lead) {
+    const auto samples = std::make_shared<const Samples>(
+        noise_volume<std::uint8_t>(grid({24, 24, 24}), 3, 0, 256));
+    Random random(7);
+    int risen = 0;
+    for (int hand = 0; hand < 60; ++hand) {
+        const bool rod = hand % 2 == 1;
+        RendererSettings settings = usual(rod ? Touching::rod : Touching::point);
+        settings.proxy.step_budget = rod ? 300 : 4096;
+        Session session{make_renderer(Field(samples, Solid::above, 0), 128.5, settings),
+                        {.fastest_hand = infinity}};
+        DeviceReading reading = ready_at({-12, 12, 12});
+        const Vec3 end(random.uniform(2, 12), random.uniform(8, 16), random.uniform(8, 16));
+        const Vec3 step = (end - reading.position) / 300;
+        double time = 0;
+        for (int i = 0; i < 300; ++i, reading.position += step) {
+            advance(session, time += period, reading);
+        }
+        double force = stand(session, time, reading, 400, [](auto&) {}).force.norm();
+        const double most = settings.force.limit * period / settings.force.ramp * (1 + 1e-9);
+        for (int change = 0; change < 4; ++change) {
+            if (rod) {
+                palpate::apply(session, command::Isovalue{random.uniform(110, 150)});
+            } else {
+                palpate::apply(session, penetrability_threshold(random.uniform(0.5, 3), 0));
+            }
+            stand(session, time, reading, 300, [&](const Tick& tick) {
+                ASSERT_LE(tick.force.norm() - force, most) << hand;
+                risen += tick.force.norm() > force;
+                force = tick.force.norm();
+            });
+        }
+    }
+    EXPECT_GT(risen, 1000);
+}
 
 /// 100 mm/s, which is faster than the ramp.
 TEST(ForceChanges, a_surface_that_moves_in_a_sequence_pushes_as_it_moves) {
