@@ -375,9 +375,7 @@ ForceResult render_force(ForceState& state, const ForceSettings& settings,
 Vec3 texture_slope(const Texture& texture, const Vec3& p) {
     if (texture.amplitude == 0) return Vec3::Zero();
     const double w = 2 * std::numbers::pi / texture.wavelength;
-    const Vec3 s = (w * p).array().sin();
-    const Vec3 c = (w * p).array().cos();
-    return texture.amplitude * w * Vec3(c[0] * s[1] * s[2], s[0] * c[1] * s[2], s[0] * s[1] * c[2]);
+    return texture.amplitude * w / 2 * (w * p).array().cos();
 }
 
 }  // namespace palpate

@@ -228,7 +228,8 @@ TEST(Force, texture_slope_is_the_gradient_of_the_bumps) {
     const Texture texture{0.3, 1.7};
     const auto height = [&](const Vec3& p) {
         const double w = 2 * std::numbers::pi / texture.wavelength;
-        return texture.amplitude * std::sin(w * p[0]) * std::sin(w * p[1]) * std::sin(w * p[2]);
+        return texture.amplitude / 2 *
+               (std::sin(w * p[0]) + std::sin(w * p[1]) + std::sin(w * p[2]));
     };
     Random random(4);
     for (int i = 0; i < 200; ++i) {
@@ -237,6 +238,24 @@ TEST(Force, texture_slope_is_the_gradient_of_the_bumps) {
         for (int a = 0; a < 3; ++a) {
             const Vec3 step = 1e-5 * Vec3::Unit(a);
             ASSERT_NEAR(slope[a], (height(p + step) - height(p - step)) / 2e-5, 1e-8);
+        }
+    }
+}
+
+TEST(Force, texture_has_bumps_on_every_plane) {
+    const Texture texture{0.2, 2};
+    const double steepest = texture.amplitude / 2 * 2 * std::numbers::pi / texture.wavelength;
+    for (const double place : {0.0, 0.25, 0.5, 1.0, 3.0, 20.3}) {
+        for (int across = 0; across < 3; ++across) {
+            double most = 0;
+            for (double along = 0; along < texture.wavelength; along += 0.01) {
+                Vec3 p = Vec3::Constant(along);
+                p[across] = place;
+                Vec3 slope = texture_slope(texture, p);
+                slope[across] = 0;
+                most = std::max(most, slope.cwiseAbs().maxCoeff());
+            }
+            EXPECT_NEAR(most, steepest, 1e-9) << place;
         }
     }
 }
