@@ -196,8 +196,8 @@ INSTANTIATE_TEST_SUITE_P(Every, ForceChanges, testing::ValuesIn(all_cases()), na
 /// What a change leads to takes several ticks where an update runs out of its budget, and where the
 /// proxy is pressed through a surface and meets the next one.
 TEST(ForceChanges, are_bounded_until_the_proxy_has_got_where_they_lead) {
-    const auto samples = std::make_shared<const Samples>(
-        noise_volume<std::uint8_t>(grid({24, 24, 24}), 3, 0, 256));
+    const auto samples =
+        std::make_shared<const Samples>(noise_volume<std::uint8_t>(grid({24, 24, 24}), 3, 0, 256));
     Random random(7);
     int risen = 0;
     for (int hand = 0; hand < 60; ++hand) {
