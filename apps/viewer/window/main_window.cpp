@@ -25,6 +25,7 @@
 
 #include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/model/measurement.hpp"
+#include "apps/viewer/panel/application.hpp"
 #include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/layout.hpp"
@@ -92,10 +93,16 @@ MainWindow::MainWindow(const RunRequest& request, MakePainter make_painter)
     panel_->device_controls().find_devices();
     timer_.start(frame_ms);
 }
+    if (auto* application = dynamic_cast<Application*>(qApp)) {
+        application->on_failure = [this](const std::exception&) {
+            messages_.guarded([] { throw; });
+        };
+    }
 
 MainWindow::~MainWindow() {
     timer_.stop();
     content_.end_run();  // before anything that takes time
+    if (auto* application = dynamic_cast<Application*>(qApp)) application->on_failure = nullptr;
     delete panel_;       // it may still ask for something when it loses the focus
 }
 
