@@ -14,6 +14,8 @@
 #include <utility>
 
 #include "apps/viewer/window/content.hpp"
+#include "apps/viewer/model/measurement.hpp"
+#include "apps/viewer/panel/sentences.hpp"
 #include "apps/viewer/window/messages.hpp"
 #include "apps/viewer/window/views.hpp"
 #include "palpate/names.hpp"
@@ -249,7 +251,7 @@ void BrushControls::use() {
             used_ = choice_;
         } catch (const std::invalid_argument& e) {
             show_choice(used_);
-            Q_EMIT nonsense(QString::fromStdString(e.what()));
+            Q_EMIT nonsense(in_words(e.what()));
         }
     }
     const bool ball = editor && choice_.on && !choice_.as_tool;  // a tool is drawn

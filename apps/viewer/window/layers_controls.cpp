@@ -16,6 +16,7 @@
 #include "apps/viewer/model/transfer.hpp"
 #include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/panel/stroke_plot.hpp"
+#include "apps/viewer/panel/sentences.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
 #include "apps/viewer/window/look_controls.hpp"
@@ -293,7 +294,7 @@ LayersChoice LayersControls::choice_of(const io::LayersFile& file) const {
         std::make_shared<const Layers>(io::layers_for(file, content_.live()->field().volume()));
     choice.layers = layers;
     choice.about = QString::fromStdString(file.about);
-    choice.note = QString::fromStdString(run::layers_warning(file, loaded));
+    choice.note = in_words(run::layers_warning(file, loaded));
     if (!choice.note.isEmpty()) choice.note[0] = choice.note[0].toUpper();
     const std::string& units = loaded.values.units;
     const bool own_units = file.units.empty() || file.units == "%";
@@ -303,7 +304,7 @@ LayersChoice LayersControls::choice_of(const io::LayersFile& file) const {
         palpate::check(*layers, content_.live()->field().solid());
     } catch (const std::invalid_argument& e) {
         choice.possible = false;
-        choice.note = QString::fromStdString(e.what());
+        choice.note = in_words(e.what());
     }
     return choice;
 }

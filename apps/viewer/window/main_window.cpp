@@ -29,6 +29,7 @@
 #include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/layout.hpp"
+#include "apps/viewer/panel/sentences.hpp"
 #include "apps/viewer/panel/timeline.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/window/brush_controls.hpp"
@@ -137,7 +138,7 @@ void MainWindow::connect_parts() {
     connect(&timer_, &QTimer::timeout, this, &MainWindow::tick);
     connect(&messages_, &Messages::done, this, &MainWindow::show_note);
     connect(&views_->scene(), &Scene::problem, this,
-            [this](const QString& what) { messages_.show_problem(what); });
+            [this](const QString& what) { messages_.show_problem(in_words(what.toStdString())); });
     connect(&probe_, &ProbeController::lifted, &panel_->brush_controls(), &BrushControls::rest);
     for (const auto changed :
          {&Content::closed, &Content::run_started, &Content::playback_started, &Content::renamed}) {

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "apps/viewer/panel/layout.hpp"
+#include "apps/viewer/panel/sentences.hpp"
 
 namespace palpate::viewer {
 
@@ -24,7 +25,7 @@ bool Messages::guarded(const std::function<void()>& action) {
         return true;
     } catch (const std::exception& e) {
         const app::Failure failure = app::failure_of(e);
-        show_problem(QString::fromStdString(failure.text), failure.status);
+        show_problem(in_words(failure.text), failure.status);
         return false;
     }
 }
