@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/model/overlay.hpp"
 #include "apps/viewer/model/session_file.hpp"
 #include "apps/viewer/model/transfer.hpp"
@@ -100,6 +101,7 @@ void LayersControls::begin() {
     history_.clear();
     note_->say({});
     plot_->clear();
+    plot_->set_ruler(ruler_of(effect_.field().geometry()));
 }
 
 void LayersControls::clear() {
