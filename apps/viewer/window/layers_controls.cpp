@@ -125,18 +125,20 @@ bool LayersControls::unsaved() const {
 void LayersControls::edit(const SharedLayers& next, const QString& key) {
     const bool goes_on = !key.isEmpty() && key == last_key_ && since_edit_.isValid() &&
                          since_edit_.elapsed() < one_step_ms_;
-    history_.keep(layers(), goes_on);
+    const SharedLayers before = layers();
+    if (!request(next)) return;
+    history_.keep(before, goes_on);
     last_key_ = key;
     since_edit_.start();
-    request(next);
+    refresh();
 }
 
-void LayersControls::request(const SharedLayers& next) {
+bool LayersControls::request(const SharedLayers& next) {
     // Edited layers keep their names: what gave way stays open.
     const bool same_surfaces =
         layers() && next &&
         std::ranges::equal(layers()->layers, next->layers, {}, &Layer::name, &Layer::name);
-    effect_.request(command::UseLayers{next, same_surfaces});
+    return effect_.request(command::UseLayers{next, same_surfaces});
 }
 
 void LayersControls::change(const QString& key, const std::function<void(Layers&)>& how) {
@@ -232,11 +234,14 @@ void LayersControls::shift_layer(int by) {
 }
 
 void LayersControls::step(bool back) {
+    const LayersHistory history = history_;
     const auto next = back ? history_.undo(layers()) : history_.redo(layers());
     if (!next) return refresh();
     last_key_.clear();
     note_->say({});
-    request(*next);
+    if (request(*next)) return;
+    history_ = history;
+    refresh();
 }
 
 int LayersControls::chosen() const {
