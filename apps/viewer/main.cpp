@@ -16,6 +16,7 @@
 #include "apps/options/view_options.hpp"
 #include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/model/opening.hpp"
+#include "apps/viewer/panel/application.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
 #include "apps/viewer/window/main_window.hpp"
 #include "apps/viewer/window/preferences.hpp"
@@ -133,7 +134,7 @@ int main(int argc, char** argv) {
     QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
     QApplication::setStyle("fusion");
     int qt_arguments = 1;
-    QApplication application(qt_arguments, argv);
+    viewer::Application application(qt_arguments, argv);
     QCoreApplication::setOrganizationName("palpate");
     QCoreApplication::setApplicationName("palpate");
     // Qt has taken the system's; files are read with strtod, whose point must stay a point.

@@ -2,12 +2,13 @@
 // names one: windows are active when a test says so, and no other program takes part.
 #include <gtest/gtest.h>
 
-#include <QApplication>
 #include <QSurfaceFormat>
 
 #include <QVTKOpenGLNativeWidget.h>
 
 #include <cstdio>
+
+#include "apps/viewer/panel/application.hpp"
 
 namespace {
 
@@ -29,7 +30,7 @@ int main(int argc, char** argv) {
         qInstallMessageHandler(tell);
     }
     QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
-    QApplication application(argc, argv);
+    palpate::viewer::Application application(argc, argv);
     QApplication::setOrganizationName("palpate-tests");
     return RUN_ALL_TESTS();
 }

@@ -235,10 +235,10 @@ Layers first_layer(double level, const std::string& name) {
     return layers;
 }
 
-void LayersHistory::keep(const SharedLayers& now, bool goes_on) {
+void LayersHistory::keep(const SharedLayers& before, bool goes_on) {
     future_.clear();
     if (goes_on && !past_.empty()) return;
-    past_.push_back(now);
+    past_.push_back(before);
     bound();
 }
 
@@ -259,8 +259,6 @@ void LayersHistory::bound() {
 }
 
 std::optional<SharedLayers> LayersHistory::undo(const SharedLayers& now) {
-    // A change that was refused left no trace in `now`.
-    while (!past_.empty() && past_.back() == now) past_.pop_back();
     if (past_.empty()) return std::nullopt;
     SharedLayers before = past_.back();
     past_.pop_back();

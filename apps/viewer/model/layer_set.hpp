@@ -88,9 +88,9 @@ class LayersHistory {
     explicit LayersHistory(std::size_t most_labels = std::size_t{512} << 20)
         : most_labels_(most_labels) {}
 
-    /// `now` is about to change. `goes_on`: the change continues the last one (a drag), so that
-    /// both are one step.
-    void keep(const SharedLayers& now, bool goes_on);
+    /// `before` has changed. `goes_on`: the change continues the last one (a drag), so that both
+    /// are one step.
+    void keep(const SharedLayers& before, bool goes_on);
     /// The value to take instead of `now`; nothing: there is none.
     std::optional<SharedLayers> undo(const SharedLayers& now);
     std::optional<SharedLayers> redo(const SharedLayers& now);

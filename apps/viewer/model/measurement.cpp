@@ -11,6 +11,9 @@
 namespace palpate::viewer {
 namespace {
 
+// Of voxels; below, lengths are in micrometres, from the second on in metres.
+constexpr double fine_mm = 0.01, coarse_mm = 100;
+
 std::string number_with(double value, const std::string& unit) {
     char text[64];
     std::snprintf(text, sizeof text, value < 100 ? "%.3g" : "%.1f", value);
@@ -21,13 +24,13 @@ std::string number_with(double value, const std::string& unit) {
 
 std::string length_text(double mm, LengthUnit unit, const std::string& voxel) {
     switch (unit) {
-        case LengthUnit::automatic:
-            if (mm >= 1e4) return number_with(1e-3 * mm, "m");
-            return length_text(mm, mm < 0.1 ? LengthUnit::micrometres : LengthUnit::millimetres);
         case LengthUnit::micrometres:
             return number_with(1e3 * mm, "µm");
+        case LengthUnit::automatic:
         case LengthUnit::millimetres:
             break;
+        case LengthUnit::metres:
+            return number_with(1e-3 * mm, "m");
         case LengthUnit::centimetres:
             return number_with(0.1 * mm, "cm");
         case LengthUnit::inches:
@@ -42,7 +45,12 @@ LengthUnit unit_in(const Geometry& geometry, LengthUnit preferred) {
     const double every = geometry.spacing[0];  // of the finest level's, 1 unless it is coarser
     const bool counted = !geometry.measured && geometry.spacing == Vec3::Constant(every) &&
                          every == std::round(every);
-    return counted ? LengthUnit::voxels : preferred;
+    if (counted) return LengthUnit::voxels;
+    if (preferred != LengthUnit::automatic) return preferred;
+    const double voxel = geometry.spacing.minCoeff();
+    return !geometry.measured || (voxel >= fine_mm && voxel < coarse_mm) ? LengthUnit::millimetres
+           : voxel < fine_mm                                             ? LengthUnit::micrometres
+                                                                         : LengthUnit::metres;
 }
 
 const char* unit_word(const Geometry& geometry) {
@@ -67,13 +75,14 @@ std::string text_of(const Measurement& m, LengthUnit unit, const std::string& vo
 }
 
 Ruler ruler_of(const Geometry& geometry) {
-    constexpr double fine_mm = 0.01, coarse_mm = 100, seen_part = 0.2;
+    constexpr double seen_part = 0.2;
     constexpr int most_decimals = 6;
     const double voxel = geometry.spacing.minCoeff();
     Ruler ruler;
     ruler.unit = unit_word(geometry);
-    if (geometry.measured && voxel < fine_mm) ruler = {"µm", 1e3, 1};
-    if (geometry.measured && voxel >= coarse_mm) ruler = {"m", 1e-3, 1};
+    const LengthUnit unit = unit_in(geometry, LengthUnit::automatic);
+    if (unit == LengthUnit::micrometres) ruler = {"µm", 1e3, 1};
+    if (unit == LengthUnit::metres) ruler = {"m", 1e-3, 1};
     const double digits = std::ceil(-std::log10(seen_part * voxel * ruler.per_mm) - 1e-9);
     ruler.decimals = std::clamp(static_cast<int>(digits), 1, most_decimals);
     return ruler;

@@ -10,16 +10,17 @@ namespace palpate::viewer {
 
 enum class Measure : std::uint8_t { length, angle };
 
-/// Automatic: micrometres below a tenth of a millimetre, else millimetres.
+/// Automatic: the unit of the volume's positions (Ruler).
 enum class LengthUnit : std::uint8_t {
     automatic,
     micrometres,
     millimetres,
     centimetres,
     inches,
-    voxels
+    voxels,
+    metres
 };
-/// What is preferred, but voxels where nothing gives the spacing.
+/// What is preferred, but voxels where nothing gives the spacing. Never automatic.
 LengthUnit unit_in(const Geometry& geometry, LengthUnit preferred = LengthUnit::millimetres);
 /// "mm", or "voxel" where nothing gives the spacing. Windows translate this word, in the context
 /// "Units".

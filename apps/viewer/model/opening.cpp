@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <numeric>
 #include <regex>
+#include <span>
 #include <stdexcept>
 #include <system_error>
 #include <vector>
@@ -18,30 +20,58 @@ namespace palpate::viewer {
 namespace {
 
 constexpr int bins = 256;
-/// Part of the samples, at either end, that may be all black or all white.
-constexpr double outliers = 0.002;
+/// Part of the samples, at either end, that may be all black or all white, of all of them and of
+/// those that are not background.
+constexpr double outliers = 0.002, foreground_outliers = 0.02;
 
 /// Of values, as those of labels and masks, whose background is one of them.
 constexpr auto few = 32;
 
-/// The level below which this part of the samples lies, but for a background that is most of them.
-double quantile(const run::Histogram& histogram, double part) {
-    auto counts = histogram.counts;
-    const auto most = std::ranges::max_element(counts);
-    const auto sum = std::accumulate(counts.begin(), counts.end(), std::int64_t{0});
+double sum_of(std::span<const std::int64_t> counts) {
+    return static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::int64_t{0}));
+}
+
+/// The bins without a background that is most of the samples: a peak, as wide as its noise, and
+/// what lies beyond it at its end of the range.
+std::span<const std::int64_t> foreground_of(std::span<const std::int64_t> counts) {
+    constexpr double foot = 0.01;   // of the peak's height
+    constexpr double spread = 2.5;  // of the peak's half width at half its height: 3 deviations
     const auto values = std::ranges::count_if(counts, [](auto count) { return count > 0; });
-    if (values > few && 2 * *most > sum) *most = 0;
-    const double all =
-        static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::int64_t{0}));
-    double below = 0;
+    if (values <= few) return counts;
+    const auto peak = std::ranges::max_element(counts);
+    const auto end_of_peak = [&](auto from, auto end) {
+        const auto below = [&](double part) {
+            return std::find_if(from, end,
+                                [&](auto n) { return double(n) < part * double(*peak); });
+        };
+        const auto width = static_cast<double>(below(0.5) - from);
+        const auto most = static_cast<std::ptrdiff_t>(1 + std::ceil(spread * width));
+        return from + std::min(below(foot) - from, most);
+    };
+    const auto after = end_of_peak(peak, counts.end());
+    const auto before = end_of_peak(std::reverse_iterator(peak + 1), counts.rend()).base();
+    if (2 * sum_of({before, after}) <= sum_of(counts)) return counts;
+    if (peak - counts.begin() < counts.end() - peak) return {after, counts.end()};
+    return {counts.begin(), before};
+}
+
+/// The level with the brightest or the darkest samples, which may be all white or all black,
+/// beyond it.
+double end_of_window(const run::Histogram& histogram, bool brightest) {
+    const std::span<const std::int64_t> all(histogram.counts);
+    const auto counts = foreground_of(all);
+    const double most = std::min(outliers * sum_of(all), foreground_outliers * sum_of(counts));
+    const auto first = static_cast<std::size_t>(counts.data() - all.data());
+    const auto level = [&](std::size_t bin) {
+        return std::lerp(histogram.low, histogram.high, double(first + bin) / double(all.size()));
+    };
+    double beyond = 0;
     for (std::size_t i = 0; i < counts.size(); ++i) {
-        below += static_cast<double>(counts[i]);
-        if (below >= part * all) {
-            return histogram.low + (histogram.high - histogram.low) * double(i + (part > 0.5)) /
-                                       double(counts.size());
-        }
+        const std::size_t bin = brightest ? counts.size() - 1 - i : i;
+        beyond += static_cast<double>(counts[bin]);
+        if (beyond > most) return level(bin + (brightest ? 1 : 0));
     }
-    return histogram.high;
+    return brightest ? histogram.high : histogram.low;
 }
 
 /// As run::load(); io::SeriesChoice comes with pictures.
@@ -72,14 +102,14 @@ std::filesystem::file_time_type time_of(const run::Source& source) {
 
 double Opened::dark() const {
     if (const auto& window = loaded.values.window) return window->centre - 0.5 * window->width;
-    return quantile(histogram, outliers);
+    return end_of_window(histogram, false);
 }
 
 double Opened::bright() const {
     if (const auto& window = loaded.values.window) return window->centre + 0.5 * window->width;
     // The last bin of few whole numbers ends beyond them.
     const double most = loaded.volume.maximum();
-    const double level = std::min(quantile(histogram, 1 - outliers), most);
+    const double level = std::min(end_of_window(histogram, true), most);
     return level > dark() ? level : most;
 }
 

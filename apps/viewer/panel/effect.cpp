@@ -4,6 +4,8 @@
 #include <exception>
 #include <utility>
 
+#include "apps/viewer/panel/sentences.hpp"
+
 namespace palpate::viewer {
 namespace {
 
@@ -53,7 +55,7 @@ QString Effect::refusal_of(const Command& command) {
         session_ = std::move(next);
         awaited_ = late_snapshots;
     } catch (const std::exception& error) {
-        return QString::fromStdString(error.what());
+        return in_words(error.what());
     }
     return {};
 }

@@ -51,7 +51,7 @@ struct Parts {
                     alter([&](Whole& whole) { whole.*member = to; });
                 }};
     }
-    /// An item of a list. One that is not there has the usual values.
+    /// An item of a list. One that is not there has the usual values, and is not changed.
     template <class Item>
     Parts<Item> at(std::vector<Item> Whole::*list, std::size_t place) const {
         return {[whole = get, list, place]() -> const Item& {
@@ -60,7 +60,9 @@ struct Parts {
                     return place < all.size() ? all[place] : usual;
                 },
                 [alter = change, list, place](const std::function<void(Item&)>& how) {
-                    alter([&](Whole& whole) { how((whole.*list).at(place)); });
+                    alter([&](Whole& whole) {
+                        if (place < (whole.*list).size()) how((whole.*list)[place]);
+                    });
                 }};
     }
 };

@@ -3,7 +3,9 @@
 
 #include <QBoxLayout>
 #include <QEvent>
+#include <QRegularExpression>
 #include <QSignalBlocker>
+#include <QToolTip>
 
 #include <algorithm>
 #include <cmath>
@@ -51,7 +53,18 @@ QString count_text(double whole) {
     return text;
 }
 
+namespace {
+
+/// Thousands in English, decimals in German.
+bool is_ambiguous(const QString& text) {
+    static const QRegularExpression one_comma("^[+-]?[1-9]\\d{0,2},\\d{3}$");
+    return one_comma.match(text).hasMatch();
+}
+
+}  // namespace
+
 std::optional<double> number_from(QString text) {
+    if (is_ambiguous(text)) return std::nullopt;
     text.replace(',', '.');
     if (text == "inf" || text == "+inf") return std::numeric_limits<double>::infinity();
     if (text == "-inf") return -std::numeric_limits<double>::infinity();
@@ -108,6 +121,15 @@ QValidator::State NumberBox::validate(QString& text, int&) const {
 }
 
 void NumberBox::fixup(QString& text) const {
+    const QString typed = bare(text);
+    if (is_ambiguous(typed)) {
+        QString thousands = typed, decimals = typed;
+        thousands.remove(',');
+        decimals.replace(',', '.');
+        QToolTip::showText(
+            mapToGlobal(rect().bottomLeft()),
+            tr("%1 can be read in two ways: type %2 or %3").arg(typed, thousands, decimals));
+    }
     text = textFromValue(value()) + suffix();  // an incomplete number restores the old one
 }
 
@@ -143,7 +165,8 @@ Quantity::Quantity(const QString& name, const QString& unit, double low, double 
     row_in(this, {slider_, box_})->setStretch(0, 1);
     setFocusProxy(box_);
     connect(slider_, &QSlider::valueChanged, this, [this](int place) { ask(value_at(place)); });
-    connect(box_, qOverload<double>(&NumberBox::valueChanged), this, &Quantity::ask);
+    connect(box_, qOverload<double>(&NumberBox::valueChanged), this,
+            [this](double shown) { ask(shown / per_1_); });
     set_value(low);
 }
 
@@ -152,9 +175,15 @@ void Quantity::set_accessible_name(const QString& name) {
     box_->setAccessibleName(name);
 }
 
+void Quantity::set_unit(const QString& unit, double per_1) {
+    per_1_ = per_1;
+    box_->setSuffix(" " + unit);
+    set_value(value_);
+}
+
 void Quantity::set_value(double value) {
     value_ = value;
-    box_->show_value(value);
+    box_->show_value(per_1_ * value);
     if (!slider_->isSliderDown()) place_slider();
 }
 

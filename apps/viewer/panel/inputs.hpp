@@ -24,7 +24,8 @@ std::optional<double> number_from(QString text);
 /// value. A typed value counts at Enter or when the focus leaves. The wheel scrolls the panel
 /// unless the box has the focus, so that scrolling never changes a force. "inf" and "-inf" are
 /// numbers where `set_infinite(true)`. A comma is a decimal point, in every language. A text with
-/// several of them is no number, and Enter restores the old one.
+/// several of them, or with one that may stand before thousands (1,000), is no number, and Enter
+/// restores the old one.
 class NumberBox : public QDoubleSpinBox {
     Q_OBJECT
 
@@ -69,6 +70,9 @@ class Quantity : public QWidget {
     /// Shows a value; emits nothing.
     void set_value(double value);
     double value() const { return value_; }
+    /// The box shows so many of this unit for 1.
+    void set_unit(const QString& unit, double per_1);
+    double per_1() const { return per_1_; }
     /// The ends of the slider; the value stays.
     void set_ends(double low, double high);
     double low() const { return low_; }
@@ -86,7 +90,7 @@ class Quantity : public QWidget {
     double value_at(int place) const;
     void place_slider();
 
-    double value_ = 0, low_, high_;
+    double value_ = 0, low_, high_, per_1_ = 1;
     Scale scale_;
     QSlider* slider_;
     NumberBox* box_;

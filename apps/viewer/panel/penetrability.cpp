@@ -13,6 +13,7 @@
 
 #include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/panel/level_chart.hpp"
+#include "apps/viewer/panel/sentences.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -166,7 +167,7 @@ class PenetrabilityControls : public EffectForm {
                 effect_.request(command::Isovalue{effect_.isovalue()});
             }
         } catch (const std::invalid_argument& error) {
-            Q_EMIT nonsense(QString::fromStdString(error.what()));
+            Q_EMIT nonsense(in_words(error.what()));
             refresh();
         }
     }

@@ -1,6 +1,7 @@
 // Draws force over depth.
 #include "apps/viewer/panel/stroke_plot.hpp"
 
+#include <QCoreApplication>
 #include <QPainter>
 
 #include <set>
@@ -59,7 +60,9 @@ void StrokePlot::paint_axes(QPainter& painter, double deepest, double highest) c
     const QRectF below(p.left(), p.bottom() + 2, p.width(), fontMetrics().height());
     painter.drawText(below, Qt::AlignLeft, "0");
     painter.drawText(below, Qt::AlignHCenter, tr("depth"));
-    painter.drawText(below, Qt::AlignRight, number_text(deepest, 2) + " mm");
+    painter.drawText(below, Qt::AlignRight,
+                     number_text(deepest * ruler_.per_mm, 2) + " " +
+                         QCoreApplication::translate("Units", ruler_.unit));
     painter.drawText(p.adjusted(3, 1, 0, 0), Qt::AlignLeft | Qt::AlignTop,
                      number_text(highest, 2) + " N");
 }
@@ -93,7 +96,7 @@ void StrokePlot::paintEvent(QPaintEvent*) {
         return;
     }
     // Round ends, so that the axes do not run along with the hand.
-    double deepest = 1, highest = 0.5;
+    double deepest = 1 / ruler_.per_mm, highest = 0.5;
     for (const Stroke::Point& point : points) {
         while (point.depth > deepest) deepest *= 2;
         while (point.force > highest) highest *= 2;

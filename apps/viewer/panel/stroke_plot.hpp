@@ -4,6 +4,7 @@
 #include <QWidget>
 
 #include "apps/viewer/model/layer_set.hpp"
+#include "apps/viewer/model/measurement.hpp"
 
 namespace palpate::viewer {
 
@@ -17,6 +18,8 @@ class StrokePlot : public QWidget {
     /// Takes a snapshot of a session with these layers.
     void add(const Snapshot& now, const SharedLayers& layers);
     void clear();
+    /// Of depths.
+    void set_ruler(const Ruler& ruler) { ruler_ = ruler; }
     const Stroke& stroke() const { return stroke_; }
 
     QSize sizeHint() const override;
@@ -33,6 +36,7 @@ class StrokePlot : public QWidget {
 
     Stroke stroke_;
     SharedLayers layers_;
+    Ruler ruler_;
 };
 
 }  // namespace palpate::viewer

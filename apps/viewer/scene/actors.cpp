@@ -298,12 +298,13 @@ std::array<vtkSmartPointer<vtkProp>, 3> slice_actors(const Field& field, const V
     return actors;
 }
 
-vtkSmartPointer<vtkActor> box_actor(const Geometry& geometry) {
+vtkSmartPointer<vtkActor> box_actor(const Geometry& geometry, int beyond) {
     const Vec3 middle = physical_centre(geometry);
     std::array<double, 24> corners{};
     for (int c = 0; c < 8; ++c) {
         const Index3 side(c & 1, c >> 1 & 1, c >> 2 & 1);
-        const Index3 index = side.cwiseProduct(geometry.size - Index3::Ones());
+        const Index3 span = geometry.size + Index3::Constant(2 * beyond - 1);
+        const Index3 index = side.cwiseProduct(span) - Index3::Constant(beyond);
         const Vec3 corner = physical_from_index(geometry, index.cast<double>()) - middle;
         std::ranges::copy(corner, corners.begin() + 3 * c);
     }

@@ -83,7 +83,7 @@ class VolumePart {
 /// grid.
 std::array<vtkSmartPointer<vtkProp>, 3> slice_actors(const Field& field, const Vec3& crosshair);
 
-/// The twelve edges of the box whose corners are the outermost samples.
-vtkSmartPointer<vtkActor> box_actor(const Geometry& geometry);
+/// The twelve edges of the box whose corners lie so many samples beyond the outermost ones.
+vtkSmartPointer<vtkActor> box_actor(const Geometry& geometry, int beyond);
 
 }  // namespace palpate::viewer

@@ -16,6 +16,9 @@ constexpr int rest_ms = 150;  // without a change: a fine picture
 // pictures per second leave 66 ms, and the window needs the processor as well.
 constexpr int many_slow_pictures = 5;
 constexpr double slow_seconds = 0.05;
+// While the data are edited and nothing else moves, a surface of at most so many is drawn whole, or
+// small cuts would not be seen.
+constexpr std::size_t most_of_edited = 1'000'000;
 
 /// The part of the look that is rendered here; the window draws the rest over it.
 Look rendered_part(Look look) {
@@ -97,6 +100,11 @@ void BackgroundRenderer::paint() {
     collect_surfaces();
     RenderRequest request = request_;
     request.moving = true;
+    for (DrawnSurface& one : request.surfaces) {
+        ExtractedSurface& surface = one.surface;
+        const bool whole = edited_ && triangle_count(surface.blocks) <= most_of_edited;
+        if (whole) surface.moving = surface.blocks;
+    }
     quick_->draw(std::move(request));
     rest_.start();
 }
@@ -104,6 +112,7 @@ void BackgroundRenderer::paint() {
 void BackgroundRenderer::request(const RenderRequest& request) {
     const bool first = request_.number == 0;
     if (!first && same_picture(request_, request)) return;
+    edited_ = edited_ && request_.camera == request.camera;
     RenderRequest next = request;
     next.number = request_.number;
     next.field = request_.field;
@@ -154,6 +163,7 @@ void BackgroundRenderer::set_overlay(std::vector<DrawnSurface> surfaces) {
 
 void BackgroundRenderer::set_field(const Field& field, double isovalue) {
     request_.field = field;
+    edited_ = false;
     isovalue_ = isovalue;
     set_patch({});
     whole_.set_moving_triangles(SurfaceLimits().moving_triangles);
@@ -169,6 +179,7 @@ void BackgroundRenderer::update_field(const Field& field) {
     const SampleBox box = changed_between(*request_.field, field);
     request_.field = field;
     if (box.empty()) return;
+    edited_ = box != whole_box(field.geometry());
     whole_.update_field(field, box);
     if (request_.look.volume || request_.look.slices) paint();
 }
@@ -228,7 +239,8 @@ void BackgroundRenderer::observe_speed(const RenderedImage& image) {
     frame_seconds_ =
         frame_seconds_ > 0 ? 0.8 * frame_seconds_ + 0.2 * image.seconds : image.seconds;
     // A volume has its own ways to become quicker.
-    const bool slow = image.seconds > slow_seconds && !image.hardware && !request_.look.volume;
+    const bool slow =
+        image.seconds > slow_seconds && !image.hardware && !request_.look.volume && !edited_;
     slow_pictures_ = slow ? slow_pictures_ + 1 : 0;
     if (slow_pictures_ < many_slow_pictures) return;
     slow_pictures_ = 0;

@@ -72,6 +72,7 @@ class BackgroundRenderer : public QObject {
     std::optional<ScenePatch> patch_;
     double isovalue_ = 0;
     bool announce_ = false;  // the felt surface was asked for, not by a version of the data
+    bool edited_ = false;    // since the camera moved
     double frame_seconds_ = 0;
     int slow_pictures_ = 0;  // in succession
     bool broken_ = false;    // no painter can draw

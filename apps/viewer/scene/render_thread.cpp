@@ -37,6 +37,7 @@
 #include "apps/viewer/scene/actors.hpp"
 #include "apps/viewer/scene/cut.hpp"
 #include "apps/viewer/scene/layer_prop.hpp"
+#include "apps/viewer/scene/surface_blocks.hpp"
 #include "apps/viewer/scene/threads.hpp"
 #include "apps/viewer/scene/view_space.hpp"
 #include "pictures/vtk/material.hpp"
@@ -105,7 +106,7 @@ class OffscreenRenderer {
     std::optional<Field> sliced_;    // what the slices show
     Vec3 crosshair_ = Vec3::Zero();
     std::array<vtkSmartPointer<vtkProp>, 3> slices_;
-    std::optional<Geometry> boxed_;
+    std::optional<std::pair<Geometry, int>> boxed_;  // its grid, and how far beyond
     vtkSmartPointer<vtkActor> box_;
     std::unique_ptr<VolumePart> volume_;
     /// A volume in one piece, and what of.
@@ -237,10 +238,13 @@ void OffscreenRenderer::show_slices(const RenderRequest& request) {
 }
 
 void OffscreenRenderer::show_box(const RenderRequest& request) {
-    if (boxed_ != request.field->geometry()) {
+    // All surfaces lie inside, also those of bodies that the grid's end cuts.
+    const Field& field = *request.field;
+    const std::pair outline(field.geometry(), closing_samples(field.interpolation()));
+    if (boxed_ != outline) {
         if (box_) solid_->RemoveActor(box_);
-        boxed_ = request.field->geometry();
-        box_ = box_actor(*boxed_);
+        boxed_ = outline;
+        box_ = box_actor(outline.first, outline.second);
         solid_->AddActor(box_);
     }
     box_->SetVisibility(request.look.box);

@@ -16,6 +16,7 @@
 #include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/scene/cut.hpp"
 #include "apps/viewer/scene/scene_parts.hpp"
+#include "apps/viewer/scene/surface_blocks.hpp"
 #include "apps/viewer/scene/view_space.hpp"
 #include "pictures/vtk/shapes.hpp"
 
@@ -35,13 +36,16 @@ Colour ink_of(const QPalette& palette) {
 
 constexpr int apart_px = 12;  // points of what is seen
 
-/// On an edge of the grid's outline, which may be drawn there.
-bool is_on_outline(const Geometry& geometry, const Vec3& point, double near_mm) {
+/// On an edge of the box that may be drawn round the field.
+bool is_on_outline(const Field& field, const Vec3& point, double near_mm) {
+    const Geometry& geometry = field.geometry();
+    const int beyond = closing_samples(field.interpolation());
     const Vec3 index = index_from_physical(geometry, point);
     int ends = 0;
     for (int a = 0; a < 3; ++a) {
         const double near = near_mm / geometry.spacing[a];
-        ends += std::abs(index[a]) < near || std::abs(index[a] - geometry.size[a] + 1) < near;
+        const double last = geometry.size[a] - 1 + beyond;
+        ends += std::abs(index[a] + beyond) < near || std::abs(index[a] - last) < near;
     }
     return ends >= 2;
 }
@@ -354,7 +358,7 @@ std::optional<SeenPoints> Scene::seen_points() const {
     for (int y = apart_px / 2; y < height(); y += apart_px) {
         for (int x = apart_px / 2; x < width(); x += apart_px) {
             const auto at = surface_at({double(x), double(y)});
-            if (!at || is_on_outline(field->geometry(), *at, 2 * pixel)) continue;
+            if (!at || is_on_outline(*field, *at, 2 * pixel)) continue;
             seen.points.push_back(*at);
             const double away = std::hypot(x - 0.5 * width(), y - 0.5 * height());
             if (away < nearest) {

@@ -70,11 +70,29 @@ std::vector<Vector3f> facet_normals(SurfaceMesh mesh, const Placing& place) {
     return pictures::mesh_normals(mesh);
 }
 
+Vec3 drawn_together(const Vec3& index, const GridEnds& ends) {
+    const Vec3 inside = index.cwiseMax(0).cwiseMin(ends.last);
+    const Vec3 before = index.cwiseMin(0), behind = (index - ends.last).cwiseMax(0);
+    return inside + ends.before * before + behind.cwiseProduct(ends.behind);
+}
+
+/// `reach`: closing_samples().
+GridEnds ends_of(const Index3& size, int every, int reach) {
+    GridEnds ends;
+    ends.last = (size - Index3::Ones()).cast<double>() / every;
+    ends.before = 1.0 / every;
+    for (int a = 0; a < 3; ++a) {
+        const double end = coarse_size(size, every)[a] - 1 + reach;  // of the coarse field
+        ends.behind[a] = double(reach) / every / (end - ends.last[a]);
+    }
+    return ends;
+}
+
 }  // namespace
 
 std::shared_ptr<const RenderMesh> block_mesh(const Field& field, double isovalue,
                                              const Index3& cell, int edge, const Vec3& middle,
-                                             const SurfaceBounds& bounds) {
+                                             const GridEnds& ends) {
     // One more cell on every side. A cubic one, around a sample, has samples on both sides.
     const bool is_smooth = field.interpolation() == Interpolation::cubic;
     const int more = is_smooth ? 2 : 1;
@@ -106,8 +124,7 @@ std::shared_ptr<const RenderMesh> block_mesh(const Field& field, double isovalue
         // The facet's normal, if the slope is zero (plateaus) or misleading (thin sheets).
         const Vector3f smooth = (-field.sign() * slope).normalized().cast<float>();
         const Vector3f normal = smooth.dot(facets[v]) > 0.3F ? smooth : facets[v];
-        const Vector3f position =
-            place(index.cwiseMax(bounds.low).cwiseMin(bounds.high)).cast<float>();
+        const Vector3f position = place(drawn_together(index, ends)).cast<float>();
         block->positions.insert(block->positions.end(), position.begin(), position.end());
         block->normals.insert(block->normals.end(), normal.begin(), normal.end());
     };
@@ -128,10 +145,7 @@ std::shared_ptr<const RenderMesh> block_mesh(const Field& field, double isovalue
 
 SurfaceBlocks::SurfaceBlocks(const Geometry& geometry, int every, Interpolation interpolation,
                              const Vec3& origin)
-    : geometry_(geometry),
-      every_(every),
-      origin_(origin),
-      reach_(interpolation == Interpolation::cubic ? 2 : 1) {
+    : geometry_(geometry), every_(every), origin_(origin), reach_(closing_samples(interpolation)) {
     // The cells of the ring count: from -1 to the last sample; round samples, to one after it.
     const Index3 cells_there = coarse_size(geometry.size, every) + Index3::Constant(reach_);
     count_ = (cells_there.array() + cells - 1) / cells;
@@ -175,9 +189,7 @@ std::size_t SurfaceBlocks::outdated() const {
 SurfaceBlocks::Outcome SurfaceBlocks::renew(const Field& field, double isovalue,
                                             const std::function<bool()>& go_on,
                                             std::size_t most_triangles) {
-    // As far out of the full grid as its own surface can be.
-    const SurfaceBounds bounds{Vec3::Constant(double(-reach_) / every_),
-                               (geometry_.size.array() + (reach_ - 1)).cast<double>() / every_};
+    const GridEnds ends = ends_of(geometry_.size, every_, reach_);
     std::atomic<std::size_t> triangles{triangle_count(meshes_)};
     std::atomic<bool> too_many{false};
     std::vector<std::size_t> outdated;
@@ -186,7 +198,7 @@ SurfaceBlocks::Outcome SurfaceBlocks::renew(const Field& field, double isovalue,
     }
     const bool all = for_each_at_once(outdated, [&](std::size_t b) {
         if (!go_on()) return false;
-        auto mesh = block_mesh(field, isovalue, first_cell(b), cells, origin_, bounds);
+        auto mesh = block_mesh(field, isovalue, first_cell(b), cells, origin_, ends);
         const auto count = [](const auto& m) { return m ? m->triangle_count() : 0; };
         triangles += count(mesh) - count(meshes_[b]);
         meshes_[b] = std::move(mesh);

@@ -12,20 +12,25 @@
 
 namespace palpate::viewer {
 
-/// Where a surface is kept [index of a sample].
-struct SurfaceBounds {
-    Vec3 low = Vec3::Constant(-std::numeric_limits<double>::infinity());
-    Vec3 high = Vec3::Constant(std::numeric_limits<double>::infinity());
+/// So many samples beyond the outermost ones, at most, bodies that the grid's end cuts are closed.
+inline int closing_samples(Interpolation interpolation) {
+    return interpolation == Interpolation::cubic ? 2 : 1;
+}
+
+/// Where the full grid ends in the index space of a coarse one, and the factors by which a coarse
+/// surface is drawn together beyond it: there it would be closed a coarse sample away.
+struct GridEnds {
+    Vec3 last = Vec3::Constant(std::numeric_limits<double>::infinity());
+    double before = 1;
+    Vec3 behind = Vec3::Ones();
 };
 
 /// The isosurface in the `edge`^3 cells from `cell` on; positions from `middle` [mm, physical].
 /// Normals as pictures::shaded_surface has them. Looks at samples from one before the cells to one
 /// behind their last. Null where nothing of the surface lies.
-/// What would lie beyond the bounds lies on them: the surface of a coarse field would be closed a
-/// coarse sample outside of the data.
 std::shared_ptr<const RenderMesh> block_mesh(const Field& field, double isovalue,
                                              const Index3& cell, int edge, const Vec3& middle,
-                                             const SurfaceBounds& bounds = {});
+                                             const GridEnds& ends = {});
 
 /// The surface of a field, or of its coarse version (coarse_samples.hpp); made piece by piece, by
 /// as many threads as there are processors. Blocks meet without cracks, and do not depend on

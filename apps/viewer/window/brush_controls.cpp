@@ -3,6 +3,7 @@
 
 #include <QBoxLayout>
 #include <QButtonGroup>
+#include <QCoreApplication>
 #include <QLabel>
 #include <QLineEdit>
 #include <QToolButton>
@@ -14,6 +15,8 @@
 #include <utility>
 
 #include "apps/viewer/window/content.hpp"
+#include "apps/viewer/model/measurement.hpp"
+#include "apps/viewer/panel/sentences.hpp"
 #include "apps/viewer/window/messages.hpp"
 #include "apps/viewer/window/views.hpp"
 #include "palpate/names.hpp"
@@ -120,12 +123,13 @@ Quantity* BrushControls::limited(const Words& words, const Span& span, double Br
         words, span,
         {[this, member] { return std::isinf(choice_.*member) ? rate_ : choice_.*member; },
          [this, name, member, limits](double value) {
-             const auto& its = *findChild<Quantity*>(name);
+             auto& its = *findChild<Quantity*>(name);
              if (value >= its.low() && value <= its.high()) {
                  return change([=](BrushChoice& c) { c.*member = value; });
              }
-             const auto text = [](double number) { return number_text(number, 4); };
-             Q_EMIT nonsense(limits.arg(text(its.low()), text(its.high()), text(value)));
+             const auto text = [&](double number) { return number_text(its.per_1() * number, 4); };
+             Q_EMIT nonsense(limits.arg(text(its.low()), text(its.high()), text(value))
+                                 .replace("%4", its.box().suffix().trimmed()));
          }});
 }
 
@@ -143,15 +147,15 @@ QLayout* BrushControls::make_form() {
         box.setToolTip(tool_ ? tr("The brush works with what the tool is, also while it turns")
                              : tr("Take a tool on the page Feel first"));
     });
-    radius_ = limited(
-        {"brush_radius", "",
-         tr("Where half of the effect is left [mm in the volume]: from a voxel to a quarter of "
-            "the grid. With the shape of the tool: how far from its skin; with less than a "
-            "voxel, sharp corners stay where they are"),
-         tr("Radius of the brush")},
-        {"mm", 1, 25, 0, Quantity::Scale::factors}, &BrushChoice::radius,
-        tr("the brush's radius must be from %1 mm (a voxel) to %2 mm (a quarter of the "
-           "grid), not %3 mm"));
+    radius_ =
+        limited({"brush_radius", "",
+                 tr("Where half of the effect is left, in the volume: from a voxel to a quarter of "
+                    "the grid. With the shape of the tool: how far from its skin; with less than a "
+                    "voxel, sharp corners stay where they are"),
+                 tr("Radius of the brush")},
+                {"mm", 1, 25, 0, Quantity::Scale::factors}, &BrushChoice::radius,
+                tr("the brush's radius must be from %1 %4 (a voxel) to %2 %4 (a quarter of the "
+                   "grid), not %3 %4"));
     auto* hardness = limited(
         {"brush_hardness", "", tr("1: an edge of two voxels; 0: an edge as wide as the brush"),
          tr("Hardness of the brush")},
@@ -249,7 +253,7 @@ void BrushControls::use() {
             used_ = choice_;
         } catch (const std::invalid_argument& e) {
             show_choice(used_);
-            Q_EMIT nonsense(QString::fromStdString(e.what()));
+            Q_EMIT nonsense(in_words(e.what()));
         }
     }
     const bool ball = editor && choice_.on && !choice_.as_tool;  // a tool is drawn
@@ -321,6 +325,8 @@ void BrushControls::begin() {
     const double voxel = geometry.spacing.maxCoeff();
     const double side = geometry.size.cast<double>().cwiseProduct(geometry.spacing).minCoeff();
     radius_->set_ends(voxel, std::max(side / 4, 4 * voxel));
+    const Ruler ruler = ruler_of(geometry);
+    radius_->set_unit(QCoreApplication::translate("Units", ruler.unit), ruler.per_mm);
     ball_ = std::clamp(ball_, radius_->low(), radius_->high());
     beyond_ = voxel;
     choice_.radius = choice_.as_tool ? beyond_ : ball_;

@@ -19,6 +19,7 @@
 #include "apps/viewer/panel/colours.hpp"
 #include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/panel/layout.hpp"
+#include "apps/viewer/panel/sentences.hpp"
 #include "apps/viewer/window/brush_controls.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/messages.hpp"
@@ -345,7 +346,7 @@ void DeviceControls::ask_for_device(void (Connector::*use)(const devices::Device
         (connector_.*use)(devices::parse_device(option.toStdString()));
         Q_EMIT nonsense({});
     } catch (const std::invalid_argument& error) {
-        Q_EMIT nonsense(QString::fromStdString(error.what()));
+        Q_EMIT nonsense(in_words(error.what()));
     }
 }
 

@@ -73,7 +73,9 @@ void DisplayController::show_volume(const Field& field, double isovalue,
     look_from(transform);
     // With another device the view is that of the hand, or it would go aslant.
     const bool mouse = content_.live() && content_.live()->mouse();
-    if (const auto view = face_on(field.geometry(), mouse ? 0.3 : 0)) {
+    // Microscopes do not tell the sides of a body, from one of which it would be seen otherwise.
+    const double is_thin = field.geometry().oriented ? 0.3 : 0.6;
+    if (const auto view = face_on(field.geometry(), mouse ? is_thin : 0)) {
         views_.scene().look_from(*view);
     }
     const Opened& opened = *content_.volume();

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "apps/viewer/model/opening.hpp"
+#include "apps/viewer/panel/sentences.hpp"
 #include "apps/viewer/window/connector.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/device_controls.hpp"
@@ -266,7 +267,7 @@ void FileController::tell_felt(const Opened& opened, const std::vector<run::Setu
     QString words = names.size() == 1 ? tr("Felt through the device %1").arg(names.front())
                                       : tr("Felt through the devices %1").arg(names.join(", "));
     for (const std::string& sentence : content_.live()->privileges()) {
-        words += "; " + QString::fromStdString(sentence);
+        words += "; " + in_words(sentence);
     }
     messages_.show_done(words);
     Q_EMIT content_.device_changed();

@@ -10,6 +10,8 @@
 #include <QSettings>
 
 #include "palpate/io/address.hpp"
+#include "palpate/io/error.hpp"
+#include "palpate/io/sample_volume.hpp"
 #include "palpate/run/source.hpp"
 
 namespace palpate::viewer {
@@ -30,8 +32,21 @@ void keep(const char* key, const QVariant& value) {
     }
 }
 
+/// At first the one in which the program was started, unless a menu started it somewhere else.
 QString last_folder() {
-    return QSettings().value("folder", QDir::currentPath()).toString();
+    const bool writable = QFileInfo(QDir::currentPath()).isWritable();
+    const QString usual = writable ? QDir::currentPath() : QDir::homePath();
+    return QSettings().value("folder", usual).toString();
+}
+
+/// In a folder of the program.
+bool is_sample(const QString& path) {
+    try {
+        return QFileInfo(path) ==
+               QFileInfo(QString::fromStdString(io::sample_volume_path().string()));
+    } catch (const io::InputError&) {
+        return false;
+    }
 }
 
 constexpr const char* volumes =
@@ -103,7 +118,7 @@ void remember_nothing(bool nothing) {
 }
 
 void remember_folder(const QString& path) {
-    if (!is_no_file(path)) keep("folder", QFileInfo(path).absolutePath());
+    if (!is_no_file(path) && !is_sample(path)) keep("folder", QFileInfo(path).absolutePath());
 }
 
 void remember_file(const QString& path) {

@@ -11,11 +11,13 @@
 #include <stdexcept>
 #include <utility>
 
+#include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/model/overlay.hpp"
 #include "apps/viewer/model/session_file.hpp"
 #include "apps/viewer/model/transfer.hpp"
 #include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/panel/stroke_plot.hpp"
+#include "apps/viewer/panel/sentences.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
 #include "apps/viewer/window/look_controls.hpp"
@@ -99,6 +101,7 @@ void LayersControls::begin() {
     history_.clear();
     note_->say({});
     plot_->clear();
+    plot_->set_ruler(ruler_of(effect_.field().geometry()));
 }
 
 void LayersControls::clear() {
@@ -122,18 +125,20 @@ bool LayersControls::unsaved() const {
 void LayersControls::edit(const SharedLayers& next, const QString& key) {
     const bool goes_on = !key.isEmpty() && key == last_key_ && since_edit_.isValid() &&
                          since_edit_.elapsed() < one_step_ms_;
-    history_.keep(layers(), goes_on);
+    const SharedLayers before = layers();
+    if (!request(next)) return;
+    history_.keep(before, goes_on);
     last_key_ = key;
     since_edit_.start();
-    request(next);
+    refresh();
 }
 
-void LayersControls::request(const SharedLayers& next) {
+bool LayersControls::request(const SharedLayers& next) {
     // Edited layers keep their names: what gave way stays open.
     const bool same_surfaces =
         layers() && next &&
         std::ranges::equal(layers()->layers, next->layers, {}, &Layer::name, &Layer::name);
-    effect_.request(command::UseLayers{next, same_surfaces});
+    return effect_.request(command::UseLayers{next, same_surfaces});
 }
 
 void LayersControls::change(const QString& key, const std::function<void(Layers&)>& how) {
@@ -229,11 +234,14 @@ void LayersControls::shift_layer(int by) {
 }
 
 void LayersControls::step(bool back) {
+    const LayersHistory history = history_;
     const auto next = back ? history_.undo(layers()) : history_.redo(layers());
     if (!next) return refresh();
     last_key_.clear();
     note_->say({});
-    request(*next);
+    if (request(*next)) return;
+    history_ = history;
+    refresh();
 }
 
 int LayersControls::chosen() const {
@@ -293,7 +301,7 @@ LayersChoice LayersControls::choice_of(const io::LayersFile& file) const {
         std::make_shared<const Layers>(io::layers_for(file, content_.live()->field().volume()));
     choice.layers = layers;
     choice.about = QString::fromStdString(file.about);
-    choice.note = QString::fromStdString(run::layers_warning(file, loaded));
+    choice.note = in_words(run::layers_warning(file, loaded));
     if (!choice.note.isEmpty()) choice.note[0] = choice.note[0].toUpper();
     const std::string& units = loaded.values.units;
     const bool own_units = file.units.empty() || file.units == "%";
@@ -303,7 +311,7 @@ LayersChoice LayersControls::choice_of(const io::LayersFile& file) const {
         palpate::check(*layers, content_.live()->field().solid());
     } catch (const std::invalid_argument& e) {
         choice.possible = false;
-        choice.note = QString::fromStdString(e.what());
+        choice.note = in_words(e.what());
     }
     return choice;
 }

@@ -142,7 +142,7 @@ class LayersControls : public EffectForm, protected Desk {
     void ask_save();
     void save(const QString& path);
     void edit(const SharedLayers& next, const QString& key = {});
-    void request(const SharedLayers& next);
+    bool request(const SharedLayers& next);
     void change(const QString& key, const std::function<void(Layers&)>& how);
     /// Changes by this key continue each other.
     Parts<Layers> whole(const QString& key);

@@ -25,9 +25,11 @@
 
 #include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/model/measurement.hpp"
+#include "apps/viewer/panel/application.hpp"
 #include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/layout.hpp"
+#include "apps/viewer/panel/sentences.hpp"
 #include "apps/viewer/panel/timeline.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/window/brush_controls.hpp"
@@ -92,10 +94,16 @@ MainWindow::MainWindow(const RunRequest& request, MakePainter make_painter)
     panel_->device_controls().find_devices();
     timer_.start(frame_ms);
 }
+    if (auto* application = dynamic_cast<Application*>(qApp)) {
+        application->on_failure = [this](const std::exception&) {
+            messages_.guarded([] { throw; });
+        };
+    }
 
 MainWindow::~MainWindow() {
     timer_.stop();
     content_.end_run();  // before anything that takes time
+    if (auto* application = dynamic_cast<Application*>(qApp)) application->on_failure = nullptr;
     delete panel_;       // it may still ask for something when it loses the focus
 }
 
@@ -130,7 +138,7 @@ void MainWindow::connect_parts() {
     connect(&timer_, &QTimer::timeout, this, &MainWindow::tick);
     connect(&messages_, &Messages::done, this, &MainWindow::show_note);
     connect(&views_->scene(), &Scene::problem, this,
-            [this](const QString& what) { messages_.show_problem(what); });
+            [this](const QString& what) { messages_.show_problem(in_words(what.toStdString())); });
     connect(&probe_, &ProbeController::lifted, &panel_->brush_controls(), &BrushControls::rest);
     for (const auto changed :
          {&Content::closed, &Content::run_started, &Content::playback_started, &Content::renamed}) {

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "apps/viewer/panel/layout.hpp"
+#include "apps/viewer/panel/sentences.hpp"
 
 namespace palpate::viewer {
 
@@ -24,7 +25,7 @@ bool Messages::guarded(const std::function<void()>& action) {
         return true;
     } catch (const std::exception& e) {
         const app::Failure failure = app::failure_of(e);
-        show_problem(QString::fromStdString(failure.text), failure.status);
+        show_problem(in_words(failure.text), failure.status);
         return false;
     }
 }
@@ -66,8 +67,11 @@ void Messages::show_problem(const QString& what, int status) {
     problem_ = what;
     problem_status_ = status;
     std::fprintf(stderr, "palpate: %s\n", what.toLocal8Bit().constData());
-    auto* box =
-        new QMessageBox(QMessageBox::Warning, "Palpate", breakable(what), QMessageBox::Ok, window_);
+    const QString text = breakable(what);
+    for (const auto* open : window_->findChildren<QMessageBox*>("problem")) {
+        if (open->isVisible() && open->text() == text) return;
+    }
+    auto* box = new QMessageBox(QMessageBox::Warning, "Palpate", text, QMessageBox::Ok, window_);
     box->setObjectName("problem");
     box->setTextFormat(Qt::PlainText);  // also of a file with a name like "<b>"
     box->setTextInteractionFlags(Qt::TextSelectableByMouse);

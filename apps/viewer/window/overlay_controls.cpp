@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "apps/viewer/model/transfer.hpp"
+#include "apps/viewer/panel/sentences.hpp"
 #include "apps/viewer/scene/render_request.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/window/content.hpp"
@@ -168,7 +169,7 @@ void OverlayControls::use(std::shared_ptr<const Overlay> overlay,
     if (!content_.volume()) return;
     keep_file(run::place_of(overlay->source));
     overlay_ = std::move(overlay);
-    beside_->say(QString::fromStdString(run::warning_beside(
+    beside_->say(in_words(run::warning_beside(
         run::name_of(overlay_->source), overlay_->volume.geometry(), content_.volume()->loaded)));
     if (!warning().isEmpty()) messages_.show_done(warning());
     label_surfaces_ = std::move(labels);

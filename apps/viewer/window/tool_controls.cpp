@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "apps/viewer/panel/layout.hpp"
+#include "apps/viewer/panel/sentences.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
 #include "palpate/io/mesh_file.hpp"
@@ -153,7 +154,7 @@ void ToolControls::choose(int row, double scale) {
             try {
                 result->made = made_tool(spec, scale, geometry, progress);
             } catch (const std::invalid_argument& e) {
-                result->refusal = QString::fromStdString(e.what());
+                result->refusal = in_words(e.what());
             }
         },
         [this, result, made = making_, given = std::holds_alternative<io::PointsSpec>(spec)] {

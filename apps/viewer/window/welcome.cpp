@@ -53,8 +53,10 @@ Welcome::Welcome(QWidget* parent)
     devices_->setObjectName("welcome_devices");
     auto* open =
         button("welcome_open", tr("Open a volume…"),
-               tr("NRRD, MetaImage, NIfTI, DICOM, TIFF, VTI, raw; a session or a recording"));
-    auto* folder = button("welcome_folder", tr("Open a folder…"), tr("DICOM series, TIFF slices"));
+               tr("NRRD, MetaImage, NIfTI, DICOM, TIFF, HDF5, VTI, raw; a session or a recording"));
+    auto* folder =
+        button("welcome_folder", tr("Open a folder…"),
+               tr("DICOM series, TIFF slices, Zarr and N5 stores. Ctrl+L opens an address"));
     auto* sample = button("welcome_sample", tr("Feel the sample head"), tr("A CT scan of a head"));
     sample->setVisible(has_sample());
     connect(open, &QCommandLinkButton::clicked, this, &Welcome::open_asked);

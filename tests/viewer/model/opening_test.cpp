@@ -1,6 +1,7 @@
 // A volume made ready in the background.
 #include <gtest/gtest.h>
 #include <numeric>
+#include <random>
 
 #include "apps/viewer/model/opening.hpp"
 #include "apps/viewer/model/transfer.hpp"
@@ -39,6 +40,43 @@ TEST(Opening, a_background_does_not_decide_the_contrast) {
     const Opened opened{{cells, source_named("cells"), "cells"}, run::histogram_of(cells, 256)};
     EXPECT_NEAR(opened.dark(), 100, 2);
     EXPECT_NEAR(opened.bright(), 160, 2);
+}
+
+/// Noise about `level`, and a few samples of something bright.
+Opened sparse(double level, double noise, std::size_t bright) {
+    std::mt19937 random(5);
+    std::normal_distribution<double> background(level, noise);
+    std::vector<std::uint16_t> samples(40 * 40 * 40);
+    for (std::uint16_t& s : samples) {
+        s = static_cast<std::uint16_t>(std::clamp(background(random), 0.0, 4000.0));
+    }
+    for (std::size_t i = 0; i < bright; ++i) {
+        samples[i * 601 % samples.size()] = static_cast<std::uint16_t>(600 + 3000 * i / bright);
+    }
+    Volume cells(Geometry{.size = {40, 40, 40}}, samples);
+    return {{cells, source_named("cells"), "cells"}, run::histogram_of(cells, 256)};
+}
+
+TEST(Opening, neither_does_one_with_noise_however_little_else_there_is) {
+    for (const std::size_t bright : {40U, 128U, 1300U}) {
+        SCOPED_TRACE(bright);
+        const Opened opened = sparse(200, 20, bright);
+        EXPECT_GT(opened.dark(), 200) << "the background is black";
+        EXPECT_LT(opened.dark(), 700);
+        EXPECT_GT(opened.bright(), 3200) << "and what is not background decides what is white";
+    }
+}
+
+TEST(Opening, a_background_that_goes_over_into_tissue_ends_where_its_noise_does) {
+    std::vector<std::uint16_t> samples(40 * 40 * 40);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const bool air = i % 5 < 3;
+        samples[i] = static_cast<std::uint16_t>(air ? i * i % 60 : 3000 * (i % 997) / 997);
+    }
+    Volume head(Geometry{.size = {40, 40, 40}}, samples);
+    const Opened opened{{head, source_named("head"), "head"}, run::histogram_of(head, 256)};
+    EXPECT_LT(opened.dark(), 300);
+    EXPECT_GT(opened.bright(), 2800);
 }
 
 TEST(Opening, each_label_of_a_map_is_seen_on_its_background) {

@@ -126,13 +126,13 @@ TEST(Measurement, has_the_unit_and_the_decimals_of_its_grid) {
 TEST(Measurement, is_put_into_words) {
     EXPECT_EQ(text_of({Measure::length, {{0, 0, 0}, {3, 4, 0}}}), "5 mm");
     EXPECT_EQ(text_of({Measure::length, {{0, 0, 0}, {0, 0, 123.44}}}), "123.4 mm");
-    EXPECT_EQ(text_of({Measure::length, {{0, 0, 0}, {0, 0.0125, 0}}}), "12.5 µm");
+    EXPECT_EQ(text_of({Measure::length, {{0, 0, 0}, {0, 0.0125, 0}}}), "0.0125 mm");
     EXPECT_EQ(length_text(25.4, LengthUnit::inches), "1 in");
     EXPECT_EQ(length_text(25.4, LengthUnit::centimetres), "2.54 cm");
     EXPECT_EQ(length_text(0.5, LengthUnit::micrometres), "500.0 µm");
-    EXPECT_EQ(length_text(40000, LengthUnit::automatic), "40 m");
     Geometry field;
     field.spacing.setConstant(5000);
+    EXPECT_EQ(length_text(40000, unit_in(field, LengthUnit::automatic)), "40 m");
     EXPECT_EQ(ruler_of(field).number(147500) + " " + ruler_of(field).unit, "147.5 m");
     EXPECT_EQ(length_text(12.34, LengthUnit::voxels, "Voxel"), "12.3 Voxel");
     EXPECT_EQ(text_of({Measure::length, {{0, 0, 0}, {0, 20, 0}}}, LengthUnit::centimetres), "2 cm");
@@ -140,6 +140,18 @@ TEST(Measurement, is_put_into_words) {
     EXPECT_EQ(text_of({Measure::angle, {{1, 0, 0}, {0, 0, 0}, {-3, 0, 0}}}), "180.0°");
     EXPECT_EQ(text_of({Measure::angle, {{1, 0, 0}, {1, 0, 0}, {0, 2, 0}}}), "");
     EXPECT_EQ(text_of({Measure::length, {{1, 0, 0}}}), "");
+}
+
+TEST(Measurement, is_in_the_unit_of_positions_however_long_it_is) {
+    for (const double spacing : {1e-6, 0.004, 0.04, 1.0, 90.0, 400.0}) {
+        Geometry grid;
+        grid.spacing.setConstant(spacing);
+        for (const double voxels : {0.5, 20.0, 1e4}) {
+            const std::string text =
+                length_text(voxels * spacing, unit_in(grid, LengthUnit::automatic));
+            EXPECT_TRUE(text.ends_with(std::string(" ") + ruler_of(grid).unit)) << text;
+        }
+    }
 }
 
 }  // namespace

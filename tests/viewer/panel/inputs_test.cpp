@@ -25,5 +25,15 @@ TEST(NumberText, has_no_exponent_where_people_do_not_expect_one) {
     EXPECT_EQ(number_text(std::numeric_limits<double>::infinity()), "inf");
 }
 
+TEST(NumberText, with_a_comma_is_a_number_unless_it_may_be_thousands) {
+    for (const auto& [text, value] :
+         {std::pair("4,5", 4.5), {"0,125", 0.125}, {"1,0000", 1}, {"1234,567", 1234.567}}) {
+        EXPECT_EQ(number_from(text), value) << text;
+    }
+    for (const char* text : {"1,000", "-12,500", "999,999", "1,000,000", "1,000.5"}) {
+        EXPECT_FALSE(number_from(text)) << text;
+    }
+}
+
 }  // namespace
 }  // namespace palpate::viewer

@@ -248,6 +248,31 @@ TEST_F(LayersPart, a_name_twice_is_refused_with_the_reason) {
     EXPECT_EQ(find<QListWidget>("layer_list")->item(0)->text().section(' ', 0, 0), "skin");
 }
 
+TEST_F(LayersPart, a_refused_change_leaves_nothing_to_undo_and_what_could_be_redone) {
+    auto& undo = *find<QAbstractButton>("undo_layers");
+    auto& redo = *find<QAbstractButton>("redo_layers");
+    const QString reason = "layers need the method exact";
+    refuse_with = reason;
+    choose(1);
+    EXPECT_FALSE(undo.isEnabled());
+    refuse_with.clear();
+    choose(1);
+    find<QListWidget>("layer_list")->setCurrentRow(0);
+    type("layer_level", "200");
+    press("undo_layers");
+    settle();
+    ASSERT_TRUE(redo.isEnabled());
+    refuse_with = reason;
+    press("redo_layers");
+    type("layer_level", "210");
+    settle();
+    EXPECT_TRUE(redo.isEnabled());
+    refuse_with.clear();
+    press("redo_layers");
+    settle();
+    EXPECT_EQ(layer(0).level, 200);
+}
+
 TEST_F(LayersPart, layers_are_added_and_removed_and_the_last_one_ends_it) {
     press("add_layer");
     ASSERT_EQ(asked()->layers.size(), 1U);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "apps/viewer/scene/background_renderer.hpp"
+#include "palpate/edit.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "support/fields.hpp"
 #include "viewer/scene/shown_scene.hpp"
@@ -120,6 +121,30 @@ TEST(BackgroundRenderer, surface_in_motion_becomes_coarser_where_its_pictures_ar
     EXPECT_GT(quick, 40'000U);
     EXPECT_LE(slow, 40'000U);
     EXPECT_GT(slow, 1'000U);
+}
+
+TEST(BackgroundRenderer, an_edit_is_seen_at_once_as_finely_as_it_will_be_until_the_camera_moves) {
+    std::size_t triangles = 0;
+    BackgroundRenderer renderer([&](Painter::Priority, Painter::Results results) {
+        return std::make_unique<Slow>(std::move(results), 0.02, triangles);
+    });
+    Field field = linear_field(scenes::ball(support::cube(128)));
+    RenderRequest wanted;
+    wanted.width = wanted.height = 32;
+    wanted.camera = {physical_centre(field.geometry()), Vec3(0, -1, 0), Vec3(0, 0, 1), 10};
+    renderer.request(wanted);
+    renderer.set_field(field, 128);
+    wait_until([&] { return renderer.settled(); });
+    const std::size_t coarse = triangles;
+    const edit::Fill hole{{Index3(64, 16, 64), Index3(67, 26, 67)}, 0};
+    field.use(edited(field.shared_samples(), hole).samples);
+    renderer.update_field(field);
+    wait_until([&] { return renderer.settled(); });
+    EXPECT_GT(triangles, 2 * coarse);
+    wanted.camera.half_height += 1;
+    renderer.request(wanted);
+    EXPECT_LT(triangles, 2 * coarse);
+    wait_until([&] { return renderer.settled(); });
 }
 
 }  // namespace

@@ -253,17 +253,17 @@ TEST(SampleBlock, changes_between_versions_are_found_by_their_bricks) {
               whole_box(first.geometry()));
 }
 
-TEST(SurfaceBlocks, coarse_ones_reach_no_farther_out_of_the_grid_than_the_surface_does) {
+TEST(SurfaceBlocks, coarse_ones_reach_as_far_out_of_the_grid_as_the_surface_does) {
     Geometry g = support::grid({23, 18, 30});
     g.spacing = {3.2, 3.2, 3.6};
     for (const Interpolation interpolation : {Interpolation::linear, Interpolation::cubic}) {
         const Field full(Volume(g, std::vector<std::uint8_t>(23 * 18 * 30, 200)), Solid::above, 0,
                          interpolation);
-        const int reach = interpolation == Interpolation::cubic ? 2 : 1;
         for (int every = 1; every <= 7; ++every) {
             SCOPED_TRACE(every);
-            EXPECT_GT(overhang(full, 100, every), 0.1) << "it is closed outside of the samples";
-            EXPECT_LT(overhang(full, 100, every), reach + 0.001);
+            EXPECT_NEAR(overhang(full, 100, every), overhang(full, 100, 1), 0.1);
+            EXPECT_GT(overhang(full, 20, every), 0.5) << "it is closed outside of the samples";
+            EXPECT_LT(overhang(full, 20, every), closing_samples(interpolation) + 0.001);
         }
     }
 }

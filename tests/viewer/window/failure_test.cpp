@@ -181,6 +181,37 @@ TEST_F(Failures, looking_for_devices_again_changes_neither_pointer_nor_device) {
     EXPECT_NE(window_->live()->mouse(), nullptr);
 }
 
+TEST_F(Failures, in_a_slot_are_shown_once_and_the_session_goes_on) {
+    feel("synthetic:sphere:24x24x24");
+    QPushButton bad(window_.get());
+    bad.show();
+    const auto fail = [] { throw std::out_of_range("there is no such thing"); };
+    QObject::connect(&bad, &QPushButton::clicked, window_.get(), fail);
+    const auto boxes = [&] { return window_->findChildren<QMessageBox*>("problem").size(); };
+    QTest::mouseClick(&bad, Qt::LeftButton);
+    EXPECT_EQ(window_->messages().problem(), "there is no such thing");
+    EXPECT_EQ(boxes(), 1);
+    QTimer::singleShot(0, window_.get(), fail);  // as one that comes again and again
+    window_->messages().forget();
+    viewer::wait_until([&] { return !window_->messages().problem().isEmpty(); });
+    EXPECT_EQ(boxes(), 1);
+    EXPECT_TRUE(window_->live());
+}
+
+TEST_F(Failures, a_level_typed_for_a_surface_that_goes_with_its_volume_is_dropped) {
+    feel("synthetic:sphere:24x24x24");
+    on_page<QPushButton>("add_surface").click();
+    auto& level = on_page<QAbstractSpinBox>("surface_1_level");
+    level.setFocus();
+    QTest::keyClick(&level, Qt::Key_A, Qt::ControlModifier);
+    QTest::keyClicks(&level, "77");
+    feel("synthetic:sphere:20x20x20");
+    EXPECT_FALSE(level.isVisible());
+    QTest::keyClick(&level, Qt::Key_Return);
+    EXPECT_TRUE(window_->panel().look_controls().look().surfaces.empty());
+    EXPECT_EQ(window_->messages().problem(), "");
+}
+
 TEST_F(Failures, a_key_that_is_held_switches_once) {
     for (const char* name : {"forces", "freeze", "clutch", "record", "open", "quit"}) {
         EXPECT_FALSE(window_->findChild<QAction*>(name)->autoRepeat()) << name;

@@ -5,6 +5,7 @@
 #include <QComboBox>
 #include <QDialog>
 #include <QFile>
+#include <QFileDialog>
 #include <QLabel>
 #include <QMenu>
 #include <QPushButton>
@@ -18,6 +19,7 @@
 #include "apps/viewer/window/tool_controls.hpp"
 #include "io/volume_dicom_slice.hpp"
 #include "palpate/io/mesh_file.hpp"
+#include "palpate/io/sample_volume.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "viewer/window/held_reader.hpp"
 #include "viewer/window/window_fixture.hpp"
@@ -261,6 +263,32 @@ TEST_F(Files, a_thin_stack_is_seen_face_on) {
     const ViewAxes axes = axes_of(window_->views().scene().camera());
     EXPECT_LT((axes.right - Vec3::UnitX()).norm(), 1e-9);
     EXPECT_LT((axes.up + Vec3::UnitY()).norm(), 1e-9) << "rows from above";
+}
+
+TEST_F(Files, a_stack_of_a_microscope_is_seen_along_its_thin_axis) {
+    Geometry geometry{Index3(40, 36, 17)};
+    geometry.spacing = {0.25e-3, 0.25e-3, 0.3e-3};
+    geometry.oriented = false;
+    std::vector<std::uint8_t> ball(40 * 36 * 17);
+    for (int i = 0; i < int(ball.size()); ++i)
+        ball[std::size_t(i)] = std::hypot(i % 40 - 20, i / 40 % 36 - 18) < 12 ? 200 : 0;
+    io::write_volume(Volume(geometry, std::move(ball)), scratch_.path() / "stack.nrrd");
+    feel(scratch("stack.nrrd").toStdString());
+    ASSERT_FALSE(window_->live()->field().geometry().oriented);
+    EXPECT_LT((axes_of(window_->views().scene().camera()).right - Vec3::UnitX()).norm(), 1e-9);
+}
+
+TEST_F(Files, dialogs_do_not_begin_in_the_folder_of_the_sample) {
+    feel(file_of(24, "ball.mha").toStdString());
+    feel(io::sample_volume_path().string());
+    QString folder;
+    in_file_dialog([&] { press(Qt::Key_R, Qt::ControlModifier); },
+                   [&](QLineEdit& line) {
+                       auto* dialog = qobject_cast<QFileDialog*>(line.window());
+                       folder = dialog->directory().absolutePath();
+                       dialog->reject();
+                   });
+    EXPECT_EQ(folder, QString::fromStdString(scratch_.path().string()));
 }
 
 TEST_F(Files, the_first_view_shows_the_whole_volume_in_a_window_of_any_shape) {

@@ -2,6 +2,7 @@
 #include <QAbstractSpinBox>
 #include <QDialog>
 #include <QPushButton>
+#include <QToolTip>
 
 #include <limits>
 
@@ -57,6 +58,20 @@ TEST_F(Numbers, with_a_decimal_comma_mean_what_they_say) {
     wait_until([&] { return window_->live() && window_->settled(); });
     wait_until([&] { return window_->live()->field().geometry().measured; });
     EXPECT_EQ(window_->live()->field().geometry().spacing, Vec3(0.5, 1, 1));
+}
+
+TEST_F(Numbers, that_may_be_thousands_or_decimals_are_refused_with_a_note) {
+    feel("synthetic:sphere:24x24x24");
+    auto& box = on_page<NumberBox>("isovalue_box");
+    const double before = box.value();
+    type_over(box, "1,250");
+    QTest::keyClick(&box, Qt::Key_Return);
+    EXPECT_EQ(box.value(), before);
+    EXPECT_EQ(window_->content().effect().isovalue(), before);
+    EXPECT_EQ(QToolTip::text(), "1,250 can be read in two ways: type 1250 or 1.250");
+    type_over(box, "1.250");
+    QTest::keyClick(&box, Qt::Key_Return);
+    EXPECT_EQ(box.value(), 1.25);
 }
 
 TEST_F(Numbers, take_a_comma_and_no_groups_in_every_box_of_the_window) {
