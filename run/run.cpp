@@ -124,6 +124,12 @@ void Run::step() {
 }
 
 void Run::stop() {
+    is_over_ = servo_ != nullptr;
+    halt();
+}
+
+/// As stop(), but another servo may follow.
+void Run::halt() {
     if (running_) stop_servo();
     device_->stop();
     // The zero is for the device's thread to send; until then its motors hold the last force.
@@ -144,6 +150,13 @@ std::string Run::unanswered() const {
 Servo& Run::started_servo() const {
     if (!servo_) throw WrongState("the run was not started");
     return *servo_;
+}
+
+/// For what starts another servo.
+Servo& Run::servo_to_replace() const {
+    Servo& servo = started_servo();
+    if (is_over_) throw WrongState("the run has stopped for good: make another one");
+    return servo;
 }
 
 void Run::hold(std::unique_ptr<Device> device) {

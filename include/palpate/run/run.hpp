@@ -123,8 +123,8 @@ class Run {
     /// cannot render them. Throws as the constructor does; the old device then continues. A
     /// recording is finished first. The same physical device is closed first and then opened with
     /// the new options. If that fails, it is opened as it was, and if that fails, too, it counts as
-    /// lost. Throws WrongState before start(), and devices::DeviceError while a call of the old
-    /// device hangs, as do use_buttons() and use_field().
+    /// lost. Throws WrongState before start() and after stop(), and devices::DeviceError while a
+    /// call of the old device hangs, as do use_buttons() and use_field().
     void use_device(const devices::DeviceChoice& device, const OnProgress& progress = {});
     /// Continues with other buttons of the same device. The session starts anew with all settings
     /// requested so far, and with the proxy, freeze and clutch as they are. A recording is finished
@@ -167,6 +167,8 @@ class Run {
   private:
     Servo& started_servo() const;
     std::unique_ptr<Device> open_for(const Setup& setup, double isovalue,
+    Servo& servo_to_replace() const;
+    void halt();
                                      const OnProgress& progress = {},
                                      const std::function<void()>& close = {}) const;
     void hold(std::unique_ptr<Device> device);
@@ -202,6 +204,7 @@ class Run {
     std::unique_ptr<Servo> servo_;  // none before start()
     bool running_ = false;
     std::string left_behind_;
+    bool is_over_ = false;  // after stop(): no servo follows
     double period_ = 0;           // [s] of a tick of this servo
     std::int64_t steps_ = 0;      // of this servo
     double time_ = 0, told_ = 0;  // [s] of all steps; when the data was told last
