@@ -102,8 +102,9 @@ class Run {
     /// Throws std::invalid_argument, with the reason, for a command that cannot be executed, and
     /// for DeviceLimits that lower nothing; QueueFull if commands come too fast. While there are
     /// layers with surfaces, an isovalue has no effect. The last one applies when they are removed.
-    /// Speed and Moment are for the player of data(), which throws if there is none. WrongState
-    /// after stop().
+    /// Speed and Moment are for the player of data(), which throws if there is none. Samples are an
+    /// edit of data() with a version of its own: it waits until that is computed. WrongState after
+    /// stop().
     void send(const Command& asked);
     /// Commands that were sent and not carried out yet.
     std::int64_t waiting() const { return started_servo().waiting(); }
@@ -166,9 +167,9 @@ class Run {
 
   private:
     Servo& started_servo() const;
-    std::unique_ptr<Device> open_for(const Setup& setup, double isovalue,
     Servo& servo_to_replace() const;
     void halt();
+    std::unique_ptr<Device> open_for(const Setup& setup, double isovalue,
                                      const OnProgress& progress = {},
                                      const std::function<void()>& close = {}) const;
     void hold(std::unique_ptr<Device> device);
@@ -203,8 +204,8 @@ class Run {
     std::int64_t lost_before_ = 0;  // events of the recordings of this servo before
     std::unique_ptr<Servo> servo_;  // none before start()
     bool running_ = false;
-    std::string left_behind_;
     bool is_over_ = false;  // after stop(): no servo follows
+    std::string left_behind_;
     double period_ = 0;           // [s] of a tick of this servo
     std::int64_t steps_ = 0;      // of this servo
     double time_ = 0, told_ = 0;  // [s] of all steps; when the data was told last
