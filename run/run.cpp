@@ -124,6 +124,12 @@ void Run::step() {
 }
 
 void Run::stop() {
+    is_over_ = servo_ != nullptr;
+    halt();
+}
+
+/// As stop(), but another servo may follow.
+void Run::halt() {
     if (running_) stop_servo();
     device_->stop();
     // The zero is for the device's thread to send; until then its motors hold the last force.
@@ -144,6 +150,13 @@ std::string Run::unanswered() const {
 Servo& Run::started_servo() const {
     if (!servo_) throw WrongState("the run was not started");
     return *servo_;
+}
+
+/// For what starts another servo.
+Servo& Run::servo_to_replace() const {
+    Servo& servo = started_servo();
+    if (is_over_) throw WrongState("the run has stopped for good: make another one");
+    return servo;
 }
 
 void Run::hold(std::unique_ptr<Device> device) {
@@ -242,12 +255,24 @@ std::string Run::device_problem() const {
            ": the session has ended and the force is zero; check the device, then start again";
 }
 
+/// Samples that an application sends are an edit. Otherwise the next one would be made of the
+/// samples before, and neither further hands nor files would have those that are felt.
+static void replace(const Data& data, const command::Samples& by) {
+    if (by.samples->frames().size() > 1) {
+        throw std::invalid_argument(
+            "samples for a run are those of one moment: open a sequence as the run's volume");
+    }
+    data.editor().apply(edit::Replace{Index3::Zero(), flattened(*by.samples)});
+}
+
 void Run::send(const Command& asked) {
     Servo& servo = started_servo();
     if (!running_) throw WrongState("the run has stopped, so it carries out no more commands");
     const Command command = placed_beside(asked, data_->loaded());
     check(command, settings_, kind_of(field_));
-    // Of the data, so of all its runs. Throws for data that is no sequence.
+    // Of the data, so of all its runs.
+    if (const auto* to = std::get_if<command::Samples>(&command)) return replace(*data_, *to);
+    // These throw for data that is no sequence.
     if (const auto* to = std::get_if<command::Speed>(&command)) {
         return data_->player().play(to->speed);
     }

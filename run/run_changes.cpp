@@ -72,13 +72,14 @@ void Run::start_as(Run& before) {
         hold(std::move(device_));
         launch(std::move(session));
     } catch (...) {  // the system gives no thread or no memory
-        if (!hangs) {
+        if (!hangs && !before.is_over_) {
             before.stop_recording();
             before.launch(before.session_stopped());
         }
         throw;
     }
-    before.device_->stop();  // for good
+    before.is_over_ = true;
+    before.device_->stop();
     if (stays_frozen) send(command::Freeze{true});
 }
 
@@ -99,7 +100,7 @@ void Run::start_beside(const Run& first) {
 
 void Run::close_device() {
     stop_recording();
-    stop();
+    halt();
     require_answer();
     left_behind_ = unanswered();
     last_resort_.reset();
@@ -112,7 +113,7 @@ double Run::some_isovalue(const OnProgress& progress) const {
 }
 
 void Run::use_device(const devices::DeviceChoice& device, const OnProgress& progress) {
-    started_servo();  // throws before anything has changed
+    servo_to_replace();  // throws before anything has changed
     require_answer();
     left_behind_.clear();
     Setup setup = setup_;
@@ -164,7 +165,7 @@ void Run::reopen(double isovalue, const DeviceInfo& old) {
 }
 
 void Run::use_buttons(const Buttons& buttons) {
-    started_servo();
+    servo_to_replace();
     require_answer();
     Setup setup = setup_;
     setup.buttons = buttons;
@@ -177,7 +178,7 @@ void Run::use_buttons(const Buttons& buttons) {
 }
 
 void Run::use_field(Solid solid, Interpolation interpolation, std::optional<double> background) {
-    started_servo();
+    servo_to_replace();
     require_answer();
     Field field(data_->start(), solid, background, interpolation);
     RendererSettings settings = settings_;

@@ -28,12 +28,15 @@ Interpolation interpolation_in(const FieldSetup& setup, ProxyMethod method) {
                                                                 : Interpolation::linear);
 }
 
+std::uint32_t usual_clutch(int buttons) {
+    return buttons == 0 ? 0 : buttons == 1 ? 1U : 2U;
+}
+
 /// The device's bit for a button; 0 for none.
-std::uint32_t bit_of(const ButtonSetup& setup, const char* purpose, int buttons) {
+std::uint32_t bit_of(const ButtonSetup& setup, const char* purpose, int buttons,
+                     std::uint32_t usual) {
     if (std::holds_alternative<std::monostate>(setup)) return 0;
-    if (std::holds_alternative<UsualButton>(setup)) {
-        return buttons == 0 ? 0 : buttons == 1 ? 1U : 2U;
-    }
+    if (std::holds_alternative<UsualButton>(setup)) return usual;
     const int number = std::get<Button>(setup).number;
     if (number > buttons) {
         throw std::invalid_argument(purpose + (" button " + std::to_string(number)) +
@@ -239,8 +242,9 @@ Session make_session(const Field& field, double isovalue, const DeviceInfo& info
 SessionSettings session_settings(const Setup& setup, const DeviceInfo& info) {
     SessionSettings session = setup.session;
     check(session);
-    session.clutch_buttons = bit_of(setup.buttons.clutch, "clutch", info.buttons);
-    session.deadman_buttons = bit_of(setup.buttons.deadman, "dead-man", info.buttons);
+    session.clutch_buttons =
+        bit_of(setup.buttons.clutch, "clutch", info.buttons, usual_clutch(info.buttons));
+    session.deadman_buttons = bit_of(setup.buttons.deadman, "dead-man", info.buttons, 0);
     if (session.clutch_buttons & session.deadman_buttons) {
         throw std::invalid_argument("clutch and dead-man switch are the same button: name another");
     }

@@ -39,6 +39,69 @@ void bind_brushes(py::module_& module) {
         "A Brush for the level that is felt; radius [mm].");
 }
 
+void bind_bodies(py::module_& module) {
+    py::class_<ToolBody, std::shared_ptr<ToolBody>>(
+        module, "ToolBody", "The solid of a Tool, as distances from its surface, for a Sweep.")
+        .def(py::init([](const std::shared_ptr<Tool>& tool, double step, double reach) {
+                 const GilReleased unlocked;
+                 return std::make_shared<ToolBody>(tool, step, reach);
+             }),
+             py::arg("tool").none(false), py::arg("step"), py::arg("reach"),
+             "Distances at places `step` [mm] apart, known up to `reach` [mm] from the surface.\n"
+             "body_for() chooses both for a brush.")
+        .def_property_readonly(
+            "tool", [](const ToolBody& b) { return std::const_pointer_cast<Tool>(b.tool()); })
+        .def_property_readonly("step", &ToolBody::step, "[mm]")
+        .def_property_readonly("reach", &ToolBody::reach, "[mm]")
+        .def_property_readonly(
+            "is_closed", &ToolBody::is_closed,
+            "Whether the surface encloses the body. Otherwise it has no inside.");
+    module.def(
+        "body_for",
+        [](const Brush& brush, const Geometry& geometry, const std::shared_ptr<Tool>& tool) {
+            const GilReleased unlocked;
+            check_ranges(brush);
+            return std::make_shared<ToolBody>(body_for(brush, geometry, tool));
+        },
+        py::arg("brush"), py::arg("geometry"), py::arg("tool").none(false),
+        "The ToolBody of a tool for sweeps of this brush on a grid.");
+}
+
+void bind_sweeps(py::module_& module) {
+    using S = edit::Sweep;
+    py::class_<S>(module, "Sweep",
+                  "A brush with the shape of a tool, swept between two poses: it moves straight\n"
+                  "and turns evenly.")
+        .def(py::init([](const Brush& brush, const std::shared_ptr<ToolBody>& body,
+                         const Vec3& start, const Vec3& end, const Quaternion& start_orientation,
+                         const Quaternion& end_orientation) {
+                 check_numbers("start", start, ranges::finite);
+                 check_numbers("end", end, ranges::finite);
+                 return S{brush,
+                          body,
+                          {start, unit_quaternion("start_orientation_xyzw", start_orientation)},
+                          {end, unit_quaternion("end_orientation_xyzw", end_orientation)}};
+             }),
+             py::arg("brush"), py::arg("body").none(false), py::arg("start"), py::arg("end"),
+             py::arg("start_orientation_xyzw") = Quaternion::Identity(),
+             py::arg("end_orientation_xyzw") = Quaternion::Identity(),
+             "body: of body_for(). start and end [mm, physical], and the orientations there, tool\n"
+             "axes to physical axes.")
+        .def_readonly("brush", &S::brush)
+        .def_property_readonly("body",
+                               [](const S& s) { return std::const_pointer_cast<ToolBody>(s.body); })
+        .def_property_readonly(
+            "start", [](const S& s) { return s.from.position; }, "[mm, physical]")
+        .def_property_readonly(
+            "end", [](const S& s) { return s.to.position; }, "[mm, physical]")
+        .def_property_readonly(
+            "start_orientation_xyzw", [](const S& s) { return s.from.orientation; },
+            "Unit quaternion, tool axes to physical axes.")
+        .def_property_readonly(
+            "end_orientation_xyzw", [](const S& s) { return s.to.orientation; },
+            "Unit quaternion, tool axes to physical axes.");
+}
+
 }  // namespace
 
 void bind_edits(py::module_& module) {
@@ -53,6 +116,8 @@ void bind_edits(py::module_& module) {
         .def_readonly("brush", &edit::Stroke::brush)
         .def_readonly("start", &edit::Stroke::from, "[mm, physical]")
         .def_readonly("end", &edit::Stroke::to, "[mm, physical]");
+    bind_bodies(module);
+    bind_sweeps(module);
     py::class_<edit::Fill>(module, "Fill", "Sets all samples of a box to one value.")
         .def(py::init(&filled_box), py::arg("low"), py::arg("high"), py::arg("value"),
              "Corners (i, j, k), both in the box; value [data units].")

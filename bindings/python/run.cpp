@@ -245,7 +245,8 @@ void bind_editing(py::class_<LiveRun, std::shared_ptr<LiveRun>>& run) {
     using R = LiveRun;
     run.def(
            "edit", [](R& r, const Edit& edit) { r.here().data().editor().apply(edit, ctrl_c()); },
-           py::arg("edit"), Unlocked(), "Makes an edit (Stroke, Fill, Replace): one undo step.")
+           py::arg("edit"), Unlocked(),
+           "Makes an edit (Stroke, Sweep, Fill, Replace): one undo step.")
         .def(
             "undo", [](R& r) { return r.here().data().editor().undo(ctrl_c()); }, Unlocked(),
             "False if there is nothing to undo.")

@@ -16,8 +16,8 @@ from palpate.arguments import _split
 
 WIDTH = 100
 PACKAGE = Path(palpate.__file__).parent
-MODULES = {"study": ("study",), "trials": ("Plan", "Trial", "session", "read", "fit", "next_trial", "staircase", "psychometric", "Observer"),
-           "distributed": ("convert", "Converted"), "ros": ("Node", "Arm")}  # public parts of modules that are imported by name
+MODULES = {"study": ("study",), "trials": ("Plan", "Trial", "session", "read", "next_trial", "staircase"),
+           "thresholds": ("fit", "psychometric", "Observer"), "distributed": ("convert", "Converted"), "ros": ("Node", "Arm")}  # public parts of modules that are imported by name
 # The lines that pybind11 puts before a docstring.
 SIGNATURE = re.compile(r"^(?:\d+\. )?\w*\((?:.*?\) -> [^\n]*|\*args, \*\*kwargs\))$|^Overloaded function\.$", re.MULTILINE | re.DOTALL)
 CLASS, ATTRIBUTE = ast.ClassDef, ast.AnnAssign

@@ -574,7 +574,8 @@ PALPATE_API palpate_status palpate_run_change_layers(palpate_run *run, const cha
 PALPATE_API palpate_status palpate_run_lift(palpate_run *run);
 
 /* Continues with another device and with all settings requested so far. NO_DEVICE if that cannot be
- * opened; and if the device before does not answer, whose force may then still be on. */
+ * opened; and if the device before does not answer, whose force may then still be on. WRONG_STATE after
+ * palpate_run_stop(). */
 PALPATE_API palpate_status palpate_run_use_device(palpate_run *run, const char *device);
 /* Records into a new file. An existing file is refused. The session and its force continue. */
 PALPATE_API palpate_status palpate_run_record(palpate_run *run, const char *path);

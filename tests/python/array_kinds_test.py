@@ -13,6 +13,7 @@ HIPS = numpy.array([[-9.0, 0, 0], [-4, 0, 0], [-3, 1, 0], [-2, 1, 1]])
 TURNS = numpy.tile([0.0, 0, 0.6, 0.8], (4, 1))
 TIMES = numpy.arange(4) / 1000
 TOOL = palpate.Tool.named("sphere:1", 1.0)
+BODY = palpate.ToolBody(TOOL, 0.5, 2)
 TRIANGLES = numpy.array([[0, 1, 2], [1, 2, 3]], "uint32")
 
 
@@ -99,6 +100,7 @@ CALLS = {
     "follow_tool": lambda to: without_times(palpate.follow_tool(FIELD, LEVEL, TOOL, to(HIPS), to(TURNS))),
     "Geometry": lambda to: repr(palpate.Geometry(size=to(numpy.array([3, 4, 5])), spacing=to(HIPS[3] ** 2), direction=to(numpy.eye(3)[::-1]))),
     "Stroke": lambda to: repr(palpate.Stroke(palpate.Brush(), to(HIPS[0]), to(HIPS[1]))),
+    "Sweep": lambda to: repr(palpate.Sweep(palpate.Brush(), BODY, to(HIPS[0]), to(HIPS[1]), to(TURNS[0]), to(TURNS[0]))),
     "DeviceReading": lambda to: repr(palpate.DeviceReading(position=to(HIPS[1]), orientation_xyzw=to(TURNS[0]))),
     "DeviceTransform": lambda to: palpate.DeviceTransform(translation=to(HIPS[2])).physical(to(HIPS[1])).tobytes(),
 }

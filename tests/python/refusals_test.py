@@ -44,6 +44,8 @@ ACCEPTED = {
 
 
 FIELD = palpate.Field(palpate.scene("sphere:12x12x12", "float32").volume)
+TOOL = palpate.Tool.named("sphere:1", 1.0)
+BODY = palpate.ToolBody(TOOL, 0.5, 2)
 NOTHING = numpy.empty((0, 3))
 
 
@@ -100,6 +102,8 @@ def test_what_is_true_or_whole_is_not_what_python_can_convert(kind, name):
     lambda bad: palpate.command.Isovalue(bad), lambda bad: palpate.command.Scale(bad), lambda bad: palpate.command.Moment(bad),
     lambda bad: palpate.command.Speed(bad), lambda bad: palpate.Fill((0, 0, 0), (1, 1, 1), bad),
     lambda bad: palpate.Stroke(palpate.Brush(), (0, bad, 0), (0, 0, 0)), lambda bad: palpate.Stroke(palpate.Brush(), (0, 0, 0), (bad, 0, 0)),
+    lambda bad: palpate.Sweep(palpate.Brush(), BODY, (0, bad, 0), (0, 0, 0)), lambda bad: palpate.ToolBody(TOOL, bad, 1),
+    lambda bad: palpate.Sweep(palpate.Brush(), BODY, (0, 0, 0), (0, 0, 0), (bad, 0, 0, 1)),
     lambda bad: palpate.brush_for("carve", FIELD, bad, 1), lambda bad: palpate.brush_for("carve", FIELD, 0.5, bad),
     lambda bad: palpate.LoadedVolume(FIELD.volume, isovalue=bad), lambda bad: palpate.Samples(FIELD.volume).volume(bad),
     lambda bad: palpate.Mesh([[0, 0, bad], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]), lambda bad: palpate.extract(FIELD, bad),

@@ -56,6 +56,8 @@ def test_tools_and_layers_survive_pickling():
     lambda: palpate.command.Freeze(True), lambda: palpate.command.Isovalue(0.5), lambda: palpate.command.Lift(),
     lambda: palpate.command.UseTool(palpate.Tool.named("burr:3", 1.0)), lambda: palpate.command.UseTool(None),
     lambda: palpate.Fill((0, 0, 0), (1, 2, 3), 4.0), lambda: palpate.Stroke(palpate.Brush(), (0, 0, 0), (1, 1, 1)),
+    lambda: palpate.ToolBody(palpate.Tool.named("rod:4", 1.0), 0.5, 2), lambda: palpate.Sweep(
+        palpate.Brush(), palpate.ToolBody(palpate.Tool.named("rod:4", 1.0), 0.5, 2), (0, 0, 0), (1, 1, 1), end_orientation_xyzw=(0.6, 0, 0, 0.8)),
     lambda: palpate.RenderSetup(tool=palpate.Tool.named("burr:3", 1.0))], ids=lambda make: repr(make())[:24])
 def test_commands_and_edits_are_values(make):
     one = make()

@@ -5,7 +5,9 @@ import os
 import re
 import subprocess
 import sys
+import time
 
+import numpy
 import palpate
 import pytest
 
@@ -82,3 +84,23 @@ def test_where_they_can_be_kept_nowhere_that_is_told(tmp_path):
 
 def test_a_warning_that_is_an_error_ends_nothing(tmp_path):
     assert len(told(tmp_path, "run = edited(); fails(lambda: run.save('nowhere/a.nrrd')); del run", "-W", "error")[1]) == 1
+
+
+def test_samples_that_are_sent_to_a_run_are_what_it_edits_shows_and_saves(tmp_path):
+    ball, ring = (palpate.scene(f"{name}:24x24x24").volume for name in ("sphere", "torus"))
+    with palpate.Run(palpate.LoadedVolume(ball, isovalue=80), palpate.Setup(real_time=False)) as run:
+        run.send(palpate.command.Samples(palpate.Samples(ring)))
+        while not (run.snapshot() and run.snapshot().version == 1):
+            time.sleep(0.005)
+        centre = run.field().geometry.centre
+        assert run.field().value([centre]) == palpate.Field(ring).value([centre])
+        run.edit(palpate.Fill((0, 0, 0), (1, 1, 1), 7))
+        expected = ring.array.copy()
+        expected[:2, :2, :2] = 7
+        run.save(tmp_path / "ring.nrrd")
+        assert numpy.array_equal(palpate.load(tmp_path / "ring.nrrd").volume.array, expected)
+        assert run.undo() and run.undo() and not run.undo()
+        assert run.field().value([centre]) == palpate.Field(ball).value([centre])
+        moving = palpate.Samples([(0.0, ball), (0.5, ring)], period=1)
+        with pytest.raises(ValueError, match="those of one moment"):
+            run.send(palpate.command.Samples(moving))

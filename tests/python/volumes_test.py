@@ -306,6 +306,25 @@ def test_fields_meshes_samples_and_loaded_volumes_can_be_pickled_and_copied(tmp_
                              pickle.loads(pickle.dumps(palpate.Field(editor.samples))).value(points))
 
 
+def test_a_sweep_carves_with_the_shape_of_a_tool_and_turns_it():
+    volume = palpate.Volume(numpy.full((24, 24, 24), 200, "uint8"), spacing=(1, 1, 1))
+    brush = palpate.Brush(kind="carve", radius=1.5, level=100, value=0)
+    body = palpate.body_for(brush, volume.geometry, palpate.Tool.named("rod:10", 0.5))
+    half = numpy.sqrt(0.5)
+
+    def carved(*poses):
+        editor = palpate.Editor(volume)
+        editor.apply(palpate.Sweep(brush, body, *poses))
+        return editor.samples.volume().array < 100
+
+    upright = carved((6, 12, 6), (16, 12, 6))  # the rod is along z
+    assert upright[8:15, 12, 6:17].all() and not upright[:, 17].any()
+    lying = carved((6, 12, 6), (16, 12, 6), (-half, 0, 0, half), (-half, 0, 0, half))  # along y
+    assert lying[6, 14:20, 6:17].all() and not lying[10].any()
+    with pytest.raises(ValueError, match="make it with body_for"):
+        palpate.Editor(volume).apply(palpate.Sweep(palpate.Brush(radius=9, level=100), body, (0, 0, 0), (1, 1, 1)))
+
+
 def test_default_settings_are_equal():
     for kind in vars(palpate).values():
         if isinstance(kind, type) and hasattr(kind, "_fields"):

@@ -64,6 +64,18 @@ TEST(Restart, the_proxy_stays_before_a_wall_that_the_hand_has_passed) {
     EXPECT_EQ(s.live.snapshot()->session.tick.proxy.status, UpdateStatus::done);
 }
 
+TEST(Restart, a_run_that_was_stopped_never_begins_again) {
+    AtShell s;
+    s.press();
+    s.live.stop();
+    const std::int64_t last = s.live.snapshot()->number;
+    EXPECT_THROW(s.live.use_device(devices::parse_device("simulated:hand=press")), run::WrongState);
+    EXPECT_THROW(s.live.use_buttons({}), run::WrongState);
+    EXPECT_THROW(s.live.use_field(Solid::below, Interpolation::cubic), run::WrongState);
+    EXPECT_THROW(s.live.step(), run::WrongState);
+    EXPECT_EQ(s.live.snapshot()->number, last);
+}
+
 TEST(Restart, a_tool_stays_before_a_wall_that_the_hand_has_passed) {
     AtShell s;
     s.live.send(command::UseTool{std::make_shared<const Tool>(rod_tool(2, 1))});

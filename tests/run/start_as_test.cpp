@@ -5,6 +5,7 @@
 
 #include "palpate/run/run.hpp"
 #include "run/run_support.hpp"
+#include "run/session_settings.hpp"
 
 namespace palpate::run {
 namespace {
@@ -101,6 +102,18 @@ TEST(StartAs, goes_on_with_what_was_asked_for_there_and_ends_the_run_before) {
         const auto now = other.snapshot();
         return now && now->session.tick.proxy.mode == Mode::constrained;
     }));
+}
+
+TEST(Buttons, that_are_left_to_the_program_are_the_default_of_their_purpose) {
+    run::Setup setup = test::with_device("simulated");
+    DeviceInfo info;
+    setup.buttons = {UsualButton{}, UsualButton{}};
+    for (const auto& [buttons, clutch] : {std::pair{0, 0U}, {1, 1U}, {2, 2U}, {5, 2U}}) {
+        info.buttons = buttons;
+        const SessionSettings settings = session_settings(setup, info);
+        EXPECT_EQ(settings.clutch_buttons, clutch);
+        EXPECT_EQ(settings.deadman_buttons, 0U) << "as without a word about it";
+    }
 }
 
 TEST(StartBeside, begins_on_the_field_and_with_the_buttons_in_use_by_then) {

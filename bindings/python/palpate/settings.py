@@ -227,7 +227,7 @@ def complete(module):
             _complete_parts(kind, kind._fields)
             kind.__init__ = _initializer(kind.__init__, kind.__name__, kind._fields)
     commands = [kind for name, kind in vars(module.command).items() if isinstance(kind, type) and name != "UseLayers"]
-    for kind in (module.Stroke, module.Fill, module.Replace, *commands):
+    for kind in (module.Stroke, module.Sweep, module.ToolBody, module.Fill, module.Replace, *commands):
         _complete_parts(kind, [one.name for one in signatures(kind.__init__)[0]])
     for name in ("limit", "stiffness"):
         setattr(module.RenderSetup, name, _alias(module.ForceSettings, "force", name))

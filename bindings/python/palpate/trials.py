@@ -5,6 +5,7 @@ an interrupted session continues, and the fit of a psychometric function (docs/t
     palpate study --analyse p01.csv p02.csv
 """
 
+import contextlib
 import csv
 import dataclasses
 import difflib
@@ -14,6 +15,7 @@ import math
 import os
 import re
 import time
+import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Optional, Union
@@ -22,23 +24,27 @@ import numpy
 
 from .command_line import ABOVE_ZERO, Kind, Parser, answer_to, remark, run, say, tell, whole, without_secrets
 from .errors import DeviceError, InputError, OutputError
+from .thresholds import Observer as Observer, fit as fit, psychometric as psychometric
 from .whole_files import make_folder, sync
 
 _Path = Union[str, Path]
 _Row = dict[str, Any]
 
-COLUMNS = ("trial", "difference", "first", "second", "answer", "correct", "felt")
-GUESS, LAPSE = 0.5, 0.02  # of two alternatives; answers beside the question, assumed
-DOWN = 3  # right answers in a row that make it harder: converges to 79.4 % without lapses (Levitt 1971)
-AT = 0.5 ** (1 / DOWN)
-REVERSALS, MOST, AT_CEILING = 12, 120, 20  # of a staircase: it ends after so many of them, trials, or trials at its largest difference
-STEPS = (2.0, 1.3)  # factors before and after the first two reversals
+COLUMNS = ("trial", "difference", "first", "second", "answer", "correct", "felt", "plan")
+_TEXTS = ("felt", "plan")
+_WITHOUT_PLAN = COLUMNS[:-1]  # of versions that did not write it
+_WHOLE = ("repeats", "seed", "down", "reversals", "trials", "trials_at_most")  # of a plan
+_LISTS = ("differences", "steps")
 
 
 @dataclasses.dataclass(frozen=True)
 class Plan:
-    """standard: of the setting; difference: of the first trial of a staircase, as a part of the standard; differences and repeats:
-    constant ones instead; seed: of their order and of which touch is the stronger one; most: the largest difference that is asked."""
+    """standard: of the setting; seed: of the order, and of which touch is the stronger one; most: the largest difference that is asked.
+    Differences are parts of the standard.
+
+    A staircase begins with `difference`. It becomes harder by one step after `down` right answers in a row, and easier after a wrong one.
+    steps: the factors before and after the first two reversals. It ends after so many reversals, trials, or trials_at_most at `most`.
+    differences and repeats: constant ones instead."""
 
     standard: float
     difference: float = 0.5
@@ -46,6 +52,11 @@ class Plan:
     repeats: int = 20
     seed: int = 1
     most: float = 1.0
+    down: int = 3
+    steps: Sequence[float] = (2.0, 1.3)
+    reversals: int = 12
+    trials: int = 120
+    trials_at_most: int = 20
 
     def __post_init__(self) -> None:
         asked = self.differences if len(self.differences) else (self.difference,)
@@ -53,6 +64,40 @@ class Plan:
             raise ValueError("standard, differences and repeats have to be above 0")
         if not max(asked) <= self.most < math.inf:
             raise ValueError(f"differences have to be at most {self.most:g}, the largest one that the plan allows")
+        if len(self.steps) != 2 or not all(1 < step < math.inf for step in self.steps):
+            raise ValueError("steps have to be two factors above 1")
+        if not min(self.down, self.reversals, self.trials, self.trials_at_most) > 0:
+            raise ValueError("down, reversals, trials and trials_at_most have to be above 0")
+
+    @property
+    def text(self) -> str:
+        """As in a file: `standard=0.2 seed=1 ...`, without what this kind of plan does not use."""
+        def shown(name: str) -> str:
+            value = getattr(self, name)
+            if name in _WHOLE:
+                return str(int(value))
+            return "/".join(repr(float(one)) for one in numpy.atleast_1d(value))
+
+        return " ".join(f"{name}={shown(name)}" for name in _members(len(self.differences) > 0))
+
+    @classmethod
+    def of_text(cls, text: str) -> "Plan":
+        """Raises ValueError."""
+        given = dict(part.partition("=")[::2] for part in text.split())
+        if tuple(given) != _members("differences" in given):
+            raise ValueError("this is no plan")
+
+        def value(name: str, shown: str) -> Any:
+            if name in _LISTS:
+                return tuple(map(float, shown.split("/")))
+            return int(shown) if name in _WHOLE else float(shown)
+
+        return cls(**{name: value(name, shown) for name, shown in given.items()})
+
+
+def _members(constant: bool) -> tuple[str, ...]:
+    own = ("differences", "repeats") if constant else ("difference", "down", "steps", "reversals", "trials", "trials_at_most")
+    return ("standard", "seed", "most", *own)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -63,19 +108,19 @@ class Trial:
     second: float
 
 
-def staircase(difference: float, correct: Sequence[float], most: float = math.inf) -> tuple[float, list[float], int]:
-    """(the next difference, the differences at reversals, trials at `most`) after answers that were right or not."""
-    reversals, row, way, ceiling = [], 0, 0, 0
+def staircase(plan: Plan, correct: Sequence[float]) -> tuple[float, list[float], int]:
+    """(the next difference, the differences at reversals, trials at the largest one) after answers that were right or not."""
+    difference, reversals, row, way, at_most = plan.difference, [], 0, 0, 0
     for right in correct:
-        ceiling += difference >= most
+        at_most += difference >= plan.most
         row = row + 1 if right else 0
-        turn = 1 if not right else -1 if row == DOWN else 0
+        turn = 1 if not right else -1 if row == plan.down else 0
         if turn:
             row = 0
             if way and turn != way:
                 reversals.append(difference)
-            way, difference = turn, min(most, difference * STEPS[len(reversals) >= 2]**turn)
-    return difference, reversals, ceiling
+            way, difference = turn, min(plan.most, difference * plan.steps[len(reversals) >= 2]**turn)
+    return difference, reversals, at_most
 
 
 def next_trial(plan: Plan, correct: Sequence[float]) -> Optional[Trial]:
@@ -87,8 +132,8 @@ def next_trial(plan: Plan, correct: Sequence[float]) -> Optional[Trial]:
             return None
         difference = float(numpy.random.default_rng([plan.seed, 0]).permutation(every)[done])
     else:
-        difference, reversals, ceiling = staircase(plan.difference, correct, plan.most)
-        if len(reversals) >= REVERSALS or done >= MOST or ceiling >= AT_CEILING:
+        difference, reversals, at_most = staircase(plan, correct)
+        if len(reversals) >= plan.reversals or done >= plan.trials or at_most >= plan.trials_at_most:
             return None
     pair = [plan.standard, plan.standard * (1 + difference)]
     if numpy.random.default_rng([plan.seed, 1, done]).random() < 0.5:
@@ -96,30 +141,71 @@ def next_trial(plan: Plan, correct: Sequence[float]) -> Optional[Trial]:
     return Trial(done, difference, *pair)
 
 
+def _row(line: Sequence[str], columns: Sequence[str]) -> _Row:
+    """Raises ValueError."""
+    if len(line) != len(columns):
+        raise ValueError
+    row: _Row = {"plan": "", **{name: text if name in _TEXTS else float(text) for name, text in zip(columns, line)}}
+    if not (0 < row["difference"] < math.inf and row["answer"] in (1, 2) and row["correct"] == _is_right(row, row["answer"])):
+        raise ValueError
+    return row
+
+
+def _is_right(row: _Row, answer: float) -> int:
+    return int((answer == 2) == (row["second"] > row["first"]))
+
+
 def read(path: _Path, plan: Optional[Plan] = None) -> list[_Row]:
-    """Rows of a session: dicts of numbers, and a text `felt`. With a plan, they have to be its trials. Raises InputError."""
+    """Rows of a session: dicts of numbers, and the texts `felt` and `plan`. They have to be the trials of their plan, and of the one that
+    is given. Warns if a file of an older version has no plan and none is given. Raises InputError."""
     try:
-        with open(path, encoding="utf-8", errors="surrogateescape", newline="") as file:  # names of files may be any bytes
-            lines = list(csv.reader(file))
+        text = Path(path).read_bytes().decode(errors="surrogateescape")  # names of files may be any bytes
     except OSError as error:
         raise InputError(f"{path}: {error.strerror}: check the name") from error
+    rows = _rows(path, text, plan)
+    if rows and not (plan or rows[0]["plan"]):
+        warnings.warn(f"{path}: the plan of its trials is missing, because an older version wrote this file: they are taken as they are",
+                      stacklevel=2)
+    return rows
+
+
+def _rows(path: _Path, text: str, plan: Optional[Plan], felt: Optional[str] = None) -> list[_Row]:
+    try:
+        lines = list(csv.reader(io.StringIO(text, newline="")))
     except csv.Error as error:
         raise InputError(f"{path}: no session of trials") from error
-    rows = []
-    for number, line in enumerate(lines[1:], 2):
-        try:
-            row: _Row = dict(zip(COLUMNS, [*map(float, line[:-1]), *line[-1:]]))
-            if len(line) != len(COLUMNS):
-                raise ValueError
-        except ValueError as error:
-            raise InputError(f"{path}, line {number}: {len(COLUMNS) - 1} numbers and what was felt are needed") from error
-        trial = next_trial(plan, [r["correct"] for r in rows]) if plan else None
-        if plan and (trial is None or any(abs(row[name] - value) > 1e-9 for name, value in dataclasses.asdict(trial).items())):
-            raise InputError(f"{path}, line {number}: this is no trial of the plan; use another file for another plan")
-        rows.append(row)
-    if lines[:1] != [list(COLUMNS)]:
+    columns = tuple(lines[0]) if lines else ()
+    if columns not in (COLUMNS, _WITHOUT_PLAN):
         raise InputError(f"{path}: no session of trials")
+    rows: list[_Row] = []
+    for number, line in enumerate(lines[1:], 2):
+        where = f"{path}, line {number}"
+        try:
+            row = _row(line, columns)
+        except ValueError as error:
+            texts = [name for name in columns if name in _TEXTS]
+            raise InputError(f"{where}: {len(columns) - len(texts)} numbers and what was {' and '.join(texts)} are needed") from error
+        if felt is not None and row["felt"] != felt:
+            raise InputError(f"{path}: is a session with {row['felt']}, not with {felt}: use another file")
+        _check_row(where, row, [r["correct"] for r in rows], plan)
+        rows.append(row)
     return rows
+
+
+def _check_row(where: str, row: _Row, before: Sequence[float], plan: Optional[Plan]) -> None:
+    """A row of the plan in it and of the one that is given, after these right and wrong answers. Raises InputError."""
+    try:
+        own = Plan.of_text(row["plan"]) if row["plan"] else plan
+    except (TypeError, ValueError, OverflowError) as error:
+        raise InputError(f"{where}: this is no plan of trials: {row['plan']}") from error
+    if plan and own and own.text != plan.text:
+        raise InputError(f"{where}: this is no trial of the plan ({plan.text}) but of another one ({row['plan']}); "
+                         "use another file for another plan")
+    if own is None:
+        return
+    trial = next_trial(own, before)
+    if trial is None or any(abs(row[name] - value) > 1e-9 for name, value in dataclasses.asdict(trial).items()):
+        raise InputError(f"{where}: this is no trial of the plan; use another file for another plan")
 
 
 def _line(cells: Sequence[Any]) -> str:
@@ -128,83 +214,89 @@ def _line(cells: Sequence[Any]) -> str:
     return text.getvalue()
 
 
+def _answered(trial: Trial, answer: int, felt: str, plan: Plan) -> _Row:
+    row = dataclasses.asdict(trial)
+    return {**row, "answer": answer, "correct": _is_right(row, answer), "felt": felt, "plan": plan.text}
+
+
+class _Table:
+    """The open file of a session, which has whole lines only."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        try:
+            self.file = path.open("a+b", buffering=0)
+        except OSError as error:
+            raise OutputError(f"{path}: cannot be written: {error.strerror}") from error
+        try:
+            fcntl.flock(self.file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            self.file.close()
+            raise OutputError(f"{path}: another session writes to it: wait for its end, or use another file") from error
+
+    def is_empty(self) -> bool:
+        return os.fstat(self.file.fileno()).st_size == 0
+
+    def write(self, text: str) -> None:
+        """The whole text or nothing. Raises OutputError."""
+        before, rest = os.fstat(self.file.fileno()).st_size, text.encode(errors="surrogateescape")
+        try:
+            while rest:
+                rest = rest[self.file.write(rest):]
+            sync(self.path)
+        except OSError as error:
+            with contextlib.suppress(OSError):
+                self.file.truncate(before)
+            raise OutputError(f"{self.path}: cannot be written: {error.strerror}") from error
+
+    def end_the_last_line(self, plan: Plan, felt: str) -> None:
+        """A killed session, or an editor, may have left it without its end. A line of which more is missing is removed: its trial is
+        asked again. Raises InputError for a file that is no session of this plan."""
+        self.file.seek(0)
+        text = self.file.read().decode(errors="surrogateescape")
+        before, end, last = text.rpartition("\n")
+        if not last:
+            return
+        if any(line.startswith(last) and line != f"{last}\n" for line in self._next_lines(before + end, plan, felt)):
+            self.file.truncate(len((before + end).encode(errors="surrogateescape")))
+            warnings.warn(f"{self.path}: the last line was cut off: its trial is asked again", stacklevel=3)
+        else:
+            _rows(self.path, text, plan, felt)
+            self.write("\n")
+
+    def _next_lines(self, text: str, plan: Plan, felt: str) -> list[str]:
+        """All lines that can follow."""
+        if not text:
+            return [_line(COLUMNS)]
+        rows = _rows(self.path, text, plan, felt)
+        trial, columns = next_trial(plan, [row["correct"] for row in rows]), _columns(rows)
+        return [_line([_answered(trial, answer, felt, plan)[name] for name in columns]) for answer in (1, 2)] if trial else []
+
+
+def _columns(rows: Sequence[_Row]) -> tuple[str, ...]:
+    return COLUMNS if not rows or rows[0]["plan"] else _WITHOUT_PLAN
+
+
 def session(path: _Path, plan: Plan, ask: Callable[[Trial], int], felt: str = "") -> list[_Row]:
     """Asks all trials that are missing in the file. ask(trial): 1 or 2, the touch that had more. Every answer is in the file before the
     next trial begins. `felt`: which setting of what, the same for all trials of a file. Raises InputError, OutputError."""
     path = Path(path)
-    try:
-        file = path.open("ab", buffering=0)
-    except OSError as error:
-        raise OutputError(f"{path}: cannot be written: {error.strerror}") from error
-    with file:
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError as error:
-            raise OutputError(f"{path}: another session writes to it: wait for its end, or use another file") from error
-
-        def put_down(line: Sequence[Any]) -> None:
-            try:
-                file.write(_line(line).encode(errors="surrogateescape"))
-                sync(path)
-            except OSError as error:
-                raise OutputError(f"{path}: cannot be written: {error.strerror}") from error
-
-        if file.tell() == 0:
-            put_down(COLUMNS)
+    table = _Table(path)
+    with table.file:
+        table.end_the_last_line(plan, felt)
+        if table.is_empty():
+            table.write(_line(COLUMNS))
             sync(path.parent)
-        rows = read(path, plan)
-        for other in rows:
-            if other["felt"] != felt:
-                raise InputError(f"{path}: is a session with {other['felt']}, not with {felt}: use another file")
+        rows = _rows(path, path.read_bytes().decode(errors="surrogateescape"), plan, felt)
+        columns = _columns(rows)
         while trial := next_trial(plan, [row["correct"] for row in rows]):
             answer = ask(trial)
             if answer not in (1, 2):
                 raise ValueError(f"ask() has to return 1 or 2, not {answer!r}")
-            right = int((answer == 2) == (trial.second > trial.first))
-            row = {**dataclasses.asdict(trial), "answer": answer, "correct": right, "felt": felt}
-            put_down([row[name] for name in COLUMNS])
-            rows.append(row)
+            row = _answered(trial, answer, felt, plan)
+            table.write(_line([row[name] for name in columns]))
+            rows.append(row if "plan" in columns else {**row, "plan": ""})
     return rows
-
-
-def psychometric(difference: Any, threshold: float, slope: float) -> Any:
-    """The part of right answers: a Weibull function of log difference, which is 78.2 % at the threshold, and 79.4 % without lapses."""
-    reach = -numpy.log(2 * (1 - AT))
-    return GUESS + (1 - GUESS - LAPSE) * (1 - numpy.exp(-reach * (numpy.asarray(difference) / threshold)**slope))
-
-
-def fit(rows: Sequence[_Row], resamples: int = 200, seed: int = 1) -> tuple[float, float, float, float]:
-    """(threshold, low, high, slope): of highest likelihood, with the 95 % interval of a bootstrap by trials. The threshold is NaN if it is
-    not within the differences that were asked. Raises ValueError."""
-    from scipy.optimize import minimize  # not needed to run a session
-    difference, correct = (numpy.array([row[name] for row in rows], dtype=float) for name in ("difference", "correct"))
-    if len(difference) < 10 or not 0 < correct.mean() < 1:
-        raise ValueError("10 trials or more are needed, with right and with wrong answers")
-
-    def best(of):
-        def unlikely(guess):
-            right = psychometric(difference[of], *numpy.exp(guess)).clip(1e-9, 1 - 1e-9)
-            # A weak prior keeps the slope in sight of what is usual, where answers say little about it.
-            return -numpy.log(numpy.where(correct[of] > 0.5, right, 1 - right)).sum() + 0.5 * ((guess[1] - math.log(2)) / 0.7)**2
-        return numpy.exp(minimize(unlikely, [math.log(numpy.median(difference)), math.log(2)], method="Nelder-Mead").x)
-
-    random, every = numpy.random.default_rng(seed), numpy.arange(len(difference))
-    drawn = [best(random.choice(every, len(every)))[0] for _ in range(resamples)]
-    threshold, slope = best(every)
-    if not difference.min() <= threshold <= difference.max():
-        threshold = math.nan
-    return float(threshold), *map(float, numpy.quantile(drawn, (0.025, 0.975))), float(slope)
-
-
-class Observer:
-    """Answers like a person with a known threshold and slope."""
-
-    def __init__(self, threshold: float, slope: float = 2.0, seed: int = 1) -> None:
-        self.threshold, self.slope, self.random = threshold, slope, numpy.random.default_rng(seed)
-
-    def __call__(self, trial: Trial) -> int:
-        right = self.random.random() < psychometric(trial.difference, self.threshold, self.slope)
-        return 2 if right == (trial.second > trial.first) else 1
 
 
 def put(render: Any, name: str, value: float) -> None:
@@ -241,9 +333,10 @@ def touching(volume: _Path, level: Union[float, str, None], device: str, name: s
         setup = palpate.Setup(isovalue=level, device=device)
         put(setup.render, name, value)
         run = palpate.Run(loaded, setup)
-        most = getattr(run.device.limits, {"force.limit": "maximum_force", "force.torque_limit": "maximum_torque"}.get(name, ""), math.inf)
-        if value > most:
-            raise ValueError(f"{name} = {value:g}: the device renders at most {most:g}")
+        force, limits = setup.render.force, run.device.limits
+        for asked, most in ((force.limit, limits.maximum_force), (force.torque_limit, limits.maximum_torque)):
+            if asked == value and asked > most:
+                raise ValueError(f"{name} = {value:g}: the device renders at most {most:g}")
         return run, setup.render.stiffness or 0
 
     def touched_for(run):

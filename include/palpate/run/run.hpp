@@ -102,8 +102,9 @@ class Run {
     /// Throws std::invalid_argument, with the reason, for a command that cannot be executed, and
     /// for DeviceLimits that lower nothing; QueueFull if commands come too fast. While there are
     /// layers with surfaces, an isovalue has no effect. The last one applies when they are removed.
-    /// Speed and Moment are for the player of data(), which throws if there is none. WrongState
-    /// after stop().
+    /// Speed and Moment are for the player of data(), which throws if there is none. Samples are an
+    /// edit of data() with a version of its own: it waits until that is computed. WrongState after
+    /// stop().
     void send(const Command& asked);
     /// Commands that were sent and not carried out yet.
     std::int64_t waiting() const { return started_servo().waiting(); }
@@ -123,8 +124,8 @@ class Run {
     /// cannot render them. Throws as the constructor does; the old device then continues. A
     /// recording is finished first. The same physical device is closed first and then opened with
     /// the new options. If that fails, it is opened as it was, and if that fails, too, it counts as
-    /// lost. Throws WrongState before start(), and devices::DeviceError while a call of the old
-    /// device hangs, as do use_buttons() and use_field().
+    /// lost. Throws WrongState before start() and after stop(), and devices::DeviceError while a
+    /// call of the old device hangs, as do use_buttons() and use_field().
     void use_device(const devices::DeviceChoice& device, const OnProgress& progress = {});
     /// Continues with other buttons of the same device. The session starts anew with all settings
     /// requested so far, and with the proxy, freeze and clutch as they are. A recording is finished
@@ -166,6 +167,8 @@ class Run {
 
   private:
     Servo& started_servo() const;
+    Servo& servo_to_replace() const;
+    void halt();
     std::unique_ptr<Device> open_for(const Setup& setup, double isovalue,
                                      const OnProgress& progress = {},
                                      const std::function<void()>& close = {}) const;
@@ -201,6 +204,7 @@ class Run {
     std::int64_t lost_before_ = 0;  // events of the recordings of this servo before
     std::unique_ptr<Servo> servo_;  // none before start()
     bool running_ = false;
+    bool is_over_ = false;  // after stop(): no servo follows
     std::string left_behind_;
     double period_ = 0;           // [s] of a tick of this servo
     std::int64_t steps_ = 0;      // of this servo

@@ -71,7 +71,8 @@ struct Button {
     int number = 1;
     bool operator==(const Button&) const = default;
 };
-/// The second button, or the first if it is the only one.
+/// The default of its purpose. The clutch is the second button, or the first if it is the only one.
+/// There is no dead-man button.
 struct UsualButton {
     bool operator==(const UsualButton&) const = default;
 };

@@ -92,6 +92,8 @@ TEST_F(CRun, stopping_returns_when_a_slow_device_has_the_zero) {
     ASSERT_EQ(palpate_run_stop(run_), PALPATE_OK);
     EXPECT_EQ(hand_.force, 0);
     EXPECT_EQ(palpate_run_stop(run_), PALPATE_OK);
+    EXPECT_EQ(palpate_run_use_device(run_, "simulated:hand=press"), PALPATE_WRONG_STATE);
+    EXPECT_NE(std::string(palpate_last_error()).find("stopped for good"), std::string::npos);
 }
 
 TEST_F(CRun, stopping_waits_for_no_callback_that_asks_for_the_run) {
