@@ -7,6 +7,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "io/file_grid.hpp"
 #include "stream/box_bytes.hpp"
 
 namespace palpate::stream {
@@ -32,7 +33,9 @@ CoarserGrid coarser(const Geometry& finer) {
 std::vector<CoarserGrid> pyramid_of(const Geometry& finest, int chunk) {
     std::vector<CoarserGrid> grids = {{finest, Index3::Ones()}};
     while ((grids.back().geometry.size.array() > chunk).any()) {
-        grids.push_back(coarser(grids.back().geometry));
+        CoarserGrid next = coarser(grids.back().geometry);
+        if (!io::why_no_file_grid(next.geometry).empty()) break;  // it could not be opened
+        grids.push_back(std::move(next));
     }
     return grids;
 }
