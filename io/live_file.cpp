@@ -22,6 +22,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "io/file_grid.hpp"
 #include "io/system/leftovers.hpp"
 #include "io/system/system.hpp"
 
@@ -73,11 +74,7 @@ void check_layout(const LiveHeader& header, std::uint64_t file_bytes, const std:
     if (!(std::isfinite(header.interval) && header.interval >= 0)) {
         refuse("its interval between frames is not a number of seconds");
     }
-    try {
-        check(header.geometry);
-    } catch (const std::invalid_argument& error) {
-        refuse(error.what());
-    }
+    if (const std::string why = why_no_file_grid(header.geometry); !why.empty()) refuse(why);
     // An axis has at most 2^20 samples by now, so a frame's bytes fit in 64 bit.
     const std::uint64_t needed = live_slot_header_bytes + header.frame_bytes();
     if (header.first_slot % 64 != 0 || header.first_slot < live_header_bytes ||
@@ -203,7 +200,9 @@ std::byte* make_file(const std::filesystem::path& path, const LiveHeader& header
 
 LiveWriter::LiveWriter(const std::filesystem::path& path, const Geometry& geometry, SampleType type,
                        double interval, int slots) {
-    check(geometry);
+    if (const std::string why = why_no_file_grid(geometry); !why.empty()) {
+        throw std::invalid_argument(why);
+    }
     if (slots < fewest_slots || slots > most_slots) {
         throw std::invalid_argument("a live source has 2 to 1024 slots");
     }

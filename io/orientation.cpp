@@ -13,9 +13,11 @@ constexpr std::string_view positive = "LPS", negative = "RAI";
 
 std::string orientation_of(const Geometry& geometry) {
     std::string letters;
+    Mat3 left = geometry.direction.cwiseAbs();  // of sides that no axis before runs to
     for (int axis = 0; axis < 3; ++axis) {
         Eigen::Index most = 0;
-        geometry.direction.col(axis).cwiseAbs().maxCoeff(&most);
+        left.col(axis).maxCoeff(&most);
+        left.row(most).setConstant(-1);
         const bool forwards = geometry.direction(most, axis) > 0;
         letters += (forwards ? positive : negative)[static_cast<std::size_t>(most)];
     }

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <bit>
+#include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <memory>
 
 #include "io/byte_order.hpp"
+#include "io/file_grid.hpp"
 #include "io/finite.hpp"
 #include "io/inflate.hpp"
 #include "io/system/system.hpp"
@@ -52,13 +54,17 @@ class Filler {
 };
 
 void read_plain(const std::filesystem::path& path, Filler& fill) {
+    errno = 0;
     std::ifstream in(path, std::ios::binary);
     std::vector<std::byte> chunk(1 << 20);
     while (in) {
         in.read(reinterpret_cast<char*>(chunk.data()), static_cast<std::streamsize>(chunk.size()));
         fill({chunk.data(), static_cast<std::size_t>(in.gcount())});
     }
-    if (in.bad()) throw InputError(path.string() + ": reading failed; check the disk");
+    if (!in.is_open() || in.bad()) {
+        throw InputError(path.string() + ": cannot be read (" + reason(errno) + ")" +
+                         (errno == EIO ? "; check the disk" : ""));
+    }
 }
 
 void check_size(const std::filesystem::path& path, const RawLayout& raw, std::uint64_t expected,
@@ -88,10 +94,8 @@ std::uint64_t expected_bytes(const std::filesystem::path& path, const RawLayout&
     Geometry geometry;
     geometry.size = raw.size;
     geometry.spacing = raw.spacing;
-    try {
-        check(geometry);
-    } catch (const std::invalid_argument& e) {
-        throw InputError(path.string() + ": " + layout_text(raw) + ": " + e.what());
+    if (const std::string why = why_no_file_grid(geometry); !why.empty()) {
+        throw InputError(path.string() + ": " + layout_text(raw) + ": " + why);
     }
     const auto samples = static_cast<double>(sample_count(geometry));
     const double bytes = samples * static_cast<double>(size_of(raw.type));

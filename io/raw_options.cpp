@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "io/file_grid.hpp"
 #include "io/system/number.hpp"
 #include "palpate/io/written_formats.hpp"
 
@@ -27,9 +28,11 @@ Vec3 three_numbers_from(std::string_view text, char separator, std::string_view 
 
 Vec3 spacing_from(std::string_view text) {
     const Vec3 spacing = three_numbers_from(text, ',', "spacing");
-    if ((spacing.array() > 0).all()) return spacing;
+    if (is_file_spacing(spacing[0]) && is_file_spacing(spacing[1]) && is_file_spacing(spacing[2])) {
+        return spacing;
+    }
     throw std::invalid_argument("spacing " + std::string(text) +
-                                ": every spacing must be above 0 mm");
+                                ": every spacing must be above 0 mm (1e-9 to 1e9)");
 }
 
 RawLayout raw_layout_from(std::string_view dims, std::string_view type, std::string_view spacing,

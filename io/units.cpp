@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <span>
 #include <string_view>
@@ -32,11 +33,23 @@ constexpr std::array<Prefix, 12> prefixes = {{{"", "", 0},
 
 using Named = std::pair<std::string_view, double>;
 
+/// Characters that are escaped as Java does ("\\u00b5", small letters), as UTF-8.
+void unescape(std::string& text) {
+    constexpr std::size_t length = 6;
+    for (std::size_t at = 0; (at = text.find("\\u", at)) != std::string::npos; ++at) {
+        unsigned code = 0;
+        const char* const digits = text.data() + at + 2;
+        const char* const end = text.data() + std::min(at + length, text.size());
+        const auto read = std::from_chars(digits, end, code, 16);
+        if (read.ptr == digits + 4) text.replace(at, length, utf8_letter(code));
+    }
+}
+
 /// Small letters without blanks around them; every way to write the letter for "micro" is a u.
 std::string plain(std::string text) {
-    text = lower(std::move(text));
-    // The sign and the Greek letter as UTF-8, as Java escapes it, and as Latin 1.
-    for (const std::string_view micro : {"\xc2\xb5", "\xce\xbc", "\\u00b5", "\\u03bc", "\xb5"}) {
+    text = in_utf8_or_latin_1(lower(std::move(text)));
+    unescape(text);
+    for (const std::string_view micro : {"\xc2\xb5", "\xce\xbc"}) {  // the sign, the Greek letter
         if (const auto at = text.find(micro); at != std::string::npos) {
             text.replace(at, micro.size(), "u");
         }

@@ -8,6 +8,8 @@
 #include <string>
 #include <system_error>
 
+#include "io/file_grid.hpp"
+
 namespace palpate::io {
 
 namespace fs = std::filesystem;
@@ -125,6 +127,9 @@ std::string why_not_written(const fs::path& path, const Geometry& geometry, bool
             text.append(other).append(other == all[all.size() - 2] ? " or " : ", ");
         }
         return text.append(all.back()) + ": name one of these";
+    }
+    if (const std::string why = why_not_stored(geometry); !why.empty()) {
+        return path.string() + ": " + why;
     }
     if (extension.starts_with(".nii") && geometry.size.maxCoeff() > 32767) {
         return path.string() + ": NIfTI holds at most 32767 samples along an axis: name it .nrrd";

@@ -13,6 +13,10 @@ std::string duration_text(std::int64_t ns) {
     return fmt::format("{:.3g} s", 1e-6 * us);
 }
 
+std::string counted(std::uint64_t count, const std::string& thing) {
+    return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
+}
+
 std::string force_words(const Tick& tick) {
     const unsigned flags = tick.force_flags;
     if (flags & force_off) return "off";

@@ -11,6 +11,9 @@ namespace palpate::app {
 /// A duration as people read it: 850 ns, 12.4 us, 3.1 ms.
 std::string duration_text(std::int64_t ns);
 
+/// "1 level", "2 levels".
+std::string counted(std::uint64_t count, const std::string& thing);
+
 /// What a force is held back by, in words; empty for a force that is simply rendered.
 std::string force_words(const Tick& tick);
 

@@ -10,6 +10,7 @@
 #include "apps/options/say.hpp"
 #include "apps/options/source_options.hpp"
 #include "apps/options/values.hpp"
+#include "apps/options/words.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/outputs.hpp"
 #include "apps/palpate/progress.hpp"
@@ -74,12 +75,18 @@ std::shared_ptr<const stream::Store> opened_store(const ConvertWords& words,
 }
 
 /// Leaves a source where it is if it can be read box by box, and loads any other one.
-Taken opened(const ConvertWords& words) {
+Taken opened(const CLI::App& command, const ConvertWords& words) {
     const run::Source source = words.source.source();
     auto from = store_of(source);
     if (from) from->options.time = source.frame.value_or(0);
     if (auto store = from ? opened_store(words, source, *from) : nullptr) {
         words.source.warn_of_no_effect(source);
+        const std::string name = io::without_secrets(name_of(source));
+        warn_of_no_effect(command, {"--series"}, name + " is not a DICOM series");
+        warn_of_no_effect(command, {"--frame-interval"}, "a single frame is converted");
+        if (store->info().times < 2) {
+            warn_of_no_effect(command, {"--time-step"}, name + " has a single frame");
+        }
         if (!words.source.quiet) {
             for (const std::string& note : store->info().notes) {
                 say("palpate: note: {}: {}\n", from->address, note);
@@ -138,9 +145,10 @@ void to_zarr(const ConvertWords& words, const Taken& taken) {
                     {"minimum", converted.range.minimum},
                     {"maximum", converted.range.maximum}});
     } else if (!words.source.quiet) {
-        fmt::print("{}: OME-Zarr {}, {} levels, {} chunks ({} kept from before, {} empty)\n",
-                   words.output, words.ome_version, converted.levels, converted.chunks,
-                   converted.kept, converted.empty);
+        fmt::print("{}: OME-Zarr {}, {}, {} ({} kept from before, {} empty)\n", words.output,
+                   words.ome_version,
+                   counted(static_cast<std::uint64_t>(converted.levels), "level"),
+                   counted(converted.chunks, "chunk"), converted.kept, converted.empty);
     }
 }
 
@@ -171,7 +179,7 @@ void convert(const CLI::App& command, const ConvertWords& words) {
         const std::string why = io::why_not_compressed(words.output);
         if (!why.empty()) warn_of_no_effect(command, {"--compress"}, why);
     }
-    const Taken taken = opened(words);
+    const Taken taken = opened(command, words);
     (void)stream::level_of(*taken.store, taken.level);  // throws where there is none
     note_losses(command, words, taken);
     zarr ? to_zarr(words, taken) : to_file(words, taken);

@@ -119,6 +119,23 @@ double one_or(const CommandWords& words, double most) {
 
 }  // namespace
 
+std::vector<std::string> CommandWords::in(std::string_view line) {
+    constexpr std::string_view blanks = " \t\r\n\v\f";
+    std::vector<std::string> all;
+    for (;;) {
+        line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
+        if (line.empty()) return all;
+        const bool is_quoted = line.front() == '"';
+        if (is_quoted) line.remove_prefix(1);
+        const std::size_t end = is_quoted ? line.find('"') : line.find_first_of(blanks);
+        if (is_quoted && end == line.npos) {
+            throw std::invalid_argument("there is a \" without another one after it");
+        }
+        all.emplace_back(line.substr(0, end));
+        line.remove_prefix(std::min(all.back().size() + (is_quoted ? 1 : 0), line.size()));
+    }
+}
+
 void CommandWords::refuse() const {
     throw std::invalid_argument("expected: " + usage_);
 }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "palpate/run/run.hpp"
@@ -21,6 +22,9 @@ class CommandWords {
     /// The same words with another usage.
     CommandWords as(std::string usage) const { return {words_, std::move(usage)}; }
 
+    /// Words with blanks between, or in quotes: save "my head.nrrd". Throws std::invalid_argument
+    /// for a quote without an end.
+    static std::vector<std::string> in(std::string_view line);
     const std::string& name() const { return words_.at(0); }
     std::size_t count() const { return words_.size(); }
     const std::string& operator[](std::size_t at) const { return words_[at]; }

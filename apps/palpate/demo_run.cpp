@@ -181,20 +181,22 @@ void run_demo(Demo& demo, const DemoOptions& options, const DemoPicture& picture
               const std::function<void(const fs::path& folder)>& more) {
     const bool quiet = options.source.quiet;
     io::ResultFolder results(options.output, options.all_results());
-    const fs::path& folder = results.part();
-    feel(demo, options, folder);
-    std::string images;
-    try {
-        picture.draw(folder);
-        images += image_html(picture.file, picture.shows, picture.legend);
-    } catch (const io::OutputError& e) {
-        if (!quiet) say("palpate: note: {}\n", e.what());
-    }
-    const bool plotted = plot_over_time(demo.rows, folder);
-    if (plotted) images += image_html("session.png", "Depth, force and density over time", "");
-    if (more) more(folder);
-    stop_if_interrupted();
-    io::write_file(folder / "report.html", report_html(demo, images));
+    bool plotted = false;
+    results.make([&](const fs::path& folder) {
+        feel(demo, options, folder);
+        std::string images;
+        try {
+            picture.draw(folder);
+            images += image_html(picture.file, picture.shows, picture.legend);
+        } catch (const io::OutputError& e) {
+            if (!quiet) say("palpate: note: {}\n", e.what());
+        }
+        plotted = plot_over_time(demo.rows, folder);
+        if (plotted) images += image_html("session.png", "Depth, force and density over time", "");
+        if (more) more(folder);
+        stop_if_interrupted();
+        io::write_file(folder / "report.html", report_html(demo, images));
+    });
     results.complete();
     if (quiet) return;
     fmt::print("{} touched {} at isovalue {:g}.\n{}", demo.hand,

@@ -105,9 +105,7 @@ DataRequest LiveCommands::take_up(const std::optional<run::HandBrush>& brush) {
 }
 
 Request LiveCommands::from_words(std::string_view line) {
-    std::istringstream stream{std::string(line)};
-    std::vector<std::string> all;
-    for (std::string word; stream >> word;) all.push_back(word);
+    std::vector<std::string> all = CommandWords::in(line);
     const std::string name = all.empty() ? "" : all[0];
     const CommandWords words(std::move(all), name.empty() ? "a command" : name + " VALUE");
     words.expect(1, words.count());
@@ -216,6 +214,16 @@ static int addressed(std::string& words, int count) {
     return *hand;
 }
 
+/// Where # begins a comment, or the end. In quotes it is a part of a name.
+static std::size_t comment_in(std::string_view line) {
+    bool is_quoted = false;
+    for (std::size_t at = 0; at < line.size(); ++at) {
+        if (line[at] == '"') is_quoted = !is_quoted;
+        if (line[at] == '#' && !is_quoted) return at;
+    }
+    return line.size();
+}
+
 std::vector<TimedRequest> read_commands(const std::string& path, LiveCommands& commands,
                                         const WhichHand& hand) {
     std::istringstream lines(io::read_text(path, stop_if_interrupted));
@@ -223,7 +231,7 @@ std::vector<TimedRequest> read_commands(const std::string& path, LiveCommands& c
     std::size_t number = 0;
     for (std::string line; std::getline(lines, line);) {
         ++number;
-        line.resize(std::min(line.find('#'), line.size()));
+        line.resize(comment_in(line));
         std::istringstream words(line);
         std::string time, rest;
         if (!(words >> time)) continue;

@@ -59,7 +59,7 @@ void refuse_inputs(const std::vector<std::string>& inputs,
                    const std::vector<std::string>& outputs) {
     for (const std::string& output : outputs) {
         for (const std::string& input : inputs) {
-            if (output.empty() || input.empty()) continue;
+            if (output.empty() || input.empty() || is_standard_output(output)) continue;
             if (!same_file(output, input) && !stream::is_read_from(output, input)) continue;
             throw std::invalid_argument(
                 output + " is an input and would be replaced: choose another output");

@@ -13,6 +13,7 @@
 
 #include "apps/options/render_options.hpp"
 #include "apps/options/source_options.hpp"
+#include "apps/options/words.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/offline_summary.hpp"
 #include "apps/palpate/outputs.hpp"
@@ -35,10 +36,13 @@ struct ReplayOptions {
 };
 
 void print_hand(const run::ValidatedHand& hand, const std::string& recording) {
-    fmt::print("{}: {}{} ticks and {} commands, rendered again, are the same bit for bit\n",
-               recording, hand.words, hand.ticks, hand.commands);
+    const auto count = [](std::int64_t number, const char* thing) {
+        return counted(static_cast<std::uint64_t>(number), thing);
+    };
+    fmt::print("{}: {}{} and {}, rendered again, are the same bit for bit\n", recording, hand.words,
+               count(hand.ticks, "tick"), count(hand.commands, "command"));
     if (hand.lost > 0) {
-        fmt::print("the recording lost {} events while it was made\n", hand.lost);
+        fmt::print("the recording lost {} while it was made\n", count(hand.lost, "event"));
     }
     if (!hand.complete) {
         fmt::print("the recording was cut off before its end: the ticks after {} are missing\n",

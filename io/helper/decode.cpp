@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 
+#include "io/file_grid.hpp"
 #include "io/finite.hpp"
 #include "io/straightened.hpp"
 #include "io/units.hpp"
@@ -78,13 +79,13 @@ void take_step(const Request& request, std::int64_t steps, const FrameTimes& tim
 }
 
 void check_spacing(double spacing, const std::string& where) {
-    if (spacing >= least_length && spacing <= greatest_length) return;
+    if (is_file_spacing(spacing)) return;
     throw Failure("its " + where + " gives a spacing of " + text_of(spacing) +
                   " mm; correct it, spacings are above 0 (1e-9 to 1e9 mm)");
 }
 
 void check_coordinate(double coordinate, const std::string& where) {
-    if (std::abs(coordinate) <= greatest_length) return;
+    if (is_file_position(coordinate)) return;
     throw Failure("its " + where + " gives a position of " + text_of(coordinate) +
                   " mm; correct it, positions are within 1e9 mm of the origin");
 }

@@ -96,12 +96,9 @@ int checked_time_step(const Request& request, std::int64_t steps);
 /// The same for a format with times: enters the step, the times and a note into the result.
 void take_step(const Request& request, std::int64_t steps, const FrameTimes& times, Result& result);
 
-/// What lengths and positions may be [mm], far beyond what is scanned. Libraries compute with them;
-/// one of theirs never returns from a matrix of 3e38.
-constexpr double least_length = 1e-9, greatest_length = 1e9;
-/// Refuses a spacing that is not within these; `where` names what gave it.
+/// Refuses a spacing that files may not have (io/file_grid.hpp). `where` names what gave it.
 void check_spacing(double spacing, const std::string& where);
-/// Refuses a coordinate that is not finite or farther from 0 than greatest_length.
+/// Refuses a coordinate that is not finite or too far from 0.
 void check_coordinate(double coordinate, const std::string& where);
 /// All of a grid: check() and these two. Throws Failure.
 void check_geometry(const Geometry& geometry);

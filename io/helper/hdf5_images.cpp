@@ -115,7 +115,7 @@ ChunkedImage imaris_image(const Hdf5File& file, int channel, int time) {
     }
     image.frame_interval = imaris_interval(file, image.times);
     if (channel >= channels || time >= image.times) return image;
-    image.unit = file.text("/DataSetInfo/Image", "Unit");
+    image.unit = in_utf8_or_latin_1(file.text("/DataSetInfo/Image", "Unit"));
     if (image.unit.empty()) {
         image.unit = "micrometer";
         image.notes.emplace_back(
@@ -157,6 +157,7 @@ struct BdvSetup {
     std::array<double, 3> spacing = {1, 1, 1};
     std::string unit, name;
     bool has_spacing = false;
+    bool is_stretched = false;  ///< the spacing is that of its registration
 };
 
 /// The setup's attribute `dataType`, which newer files have, says what HDF5's numbers are. Without
@@ -200,16 +201,60 @@ std::vector<int> setups_of(const Hdf5File& file) {
     return setups;
 }
 
+using Affine = Eigen::Matrix4d;
+
+/// The transformation from a view's voxels to the world: its transforms, of which the last one is
+/// applied first.
+Affine registration_in(const XmlElement& view) {
+    Affine all = Affine::Identity();
+    for (const XmlElement& one : elements_at(view, "ViewTransform")) {
+        const std::vector<double> rows = numbers_in(text_at(one, "affine"), "affine");
+        if (rows.size() != 12) continue;
+        Affine affine = Affine::Identity();
+        for (Eigen::Index i = 0; i < 12; ++i) {
+            affine(i / 4, i % 4) = rows[static_cast<std::size_t>(i)];
+        }
+        all *= affine;
+    }
+    return all;
+}
+
 /// Whether registrations only stretch the axes, as the voxel size does.
 bool only_stretches(const XmlElement& root) {
-    for (const XmlElement& one :
-         elements_at(root, "ViewRegistrations/ViewRegistration/ViewTransform")) {
-        const std::vector<double> rows = numbers_in(text_at(one, "affine"), "affine");
-        for (std::size_t i = 0; i < rows.size(); ++i) {
-            if (i % 5 != 0 && rows[i] != 0) return false;
-        }
+    return std::ranges::all_of(elements_at(root, "ViewRegistrations/ViewRegistration"),
+                               [](const XmlElement& view) {
+                                   const Affine affine = registration_in(view);
+                                   return affine.isDiagonal(0) && affine.diagonal().minCoeff() > 0;
+                               });
+}
+
+/// Takes the spacing from a registration that stretches the axes, as BigDataViewer does, where the
+/// voxel size only counts voxels. Otherwise the voxel size counts.
+void take_stretch(const XmlElement& root, int time, int id, BdvSetup& setup,
+                  std::vector<std::string>& notes) {
+    for (const XmlElement& view : elements_at(root, "ViewRegistrations/ViewRegistration")) {
+        if (view.attribute("timepoint").as_int(-1) != time) continue;
+        if (view.attribute("setup").as_int(-1) != id) continue;
+        const Affine affine = registration_in(view);
+        if (!affine.isDiagonal(0) || !(affine.diagonal().minCoeff() > 0)) return;  // noted
+        const Vec3 stretch = affine.diagonal().head<3>();
+        const Vec3 size(setup.spacing[2], setup.spacing[1], setup.spacing[0]);
+        const Vec3 ratio = stretch.cwiseQuotient(size);
+        if (ratio.maxCoeff() <= (1 + 1e-4) * ratio.minCoeff()) return;
+        const auto words = [](const Vec3& v) {
+            return text_of(v[0]) + " x " + text_of(v[1]) + " x " + text_of(v[2]);
+        };
+        const bool is_count = size == Vec3::Ones();
+        notes.push_back(
+            "the ViewRegistrations in its XML file stretch its voxels by " + words(stretch) +
+            (is_count
+                 ? ", which was taken as their size"
+                 : ", which does not fit their size of " + words(size) + ": the size was taken"));
+        if (!is_count) return;
+        setup.spacing = {stretch[2], stretch[1], stretch[0]};
+        setup.is_stretched = true;
+        return;
     }
-    return true;
 }
 
 std::map<int, BdvSetup> setups_in(const XmlElement& root) {
@@ -250,14 +295,15 @@ ChunkedImage bdv_image(const Hdf5File& file, const std::filesystem::path& path, 
     auto xml = path;
     xml.replace_extension(".xml");
     std::map<int, BdvSetup> all;
+    pugi::xml_document document;
     if (std::filesystem::exists(xml)) {
-        const pugi::xml_document document = read_xml(xml);
+        document = read_xml(xml);
         const XmlElement root = document.document_element();
         all = setups_in(root);
         if (!only_stretches(root)) {
             image.notes.emplace_back(
-                "the ViewRegistrations in its XML file move or turn its images: they are not "
-                "applied");
+                "the ViewRegistrations in its XML file move, turn or mirror its images: they "
+                "are not applied");
         }
     }
     for (const int s : setups) {
@@ -268,16 +314,17 @@ ChunkedImage bdv_image(const Hdf5File& file, const std::filesystem::path& path, 
     if (channel >= static_cast<int>(setups.size()) || time >= image.times) return image;
     const int id = setups[static_cast<std::size_t>(channel)];
     const bool has_spacing = all.contains(id) && all[id].has_spacing;
-    const BdvSetup& setup = all[id];
+    const int timepoint = number_of_time(time, times, image.notes);
+    BdvSetup& setup = all[id];
+    take_stretch(document.document_element(), timepoint, id, setup, image.notes);
     image.unit = setup.unit;
     image.measured = has_spacing && !setup.unit.empty();
     if (!image.measured) image.unit = "millimeter";
-    if (!has_spacing) {
+    if (!has_spacing && !setup.is_stretched) {
         image.notes.emplace_back("no XML file beside it gives its voxel size: 1 mm was taken");
     } else if (setup.unit.empty()) {
         image.notes.emplace_back("its XML file gives no unit of length: millimetres were taken");
     }
-    const int timepoint = number_of_time(time, times, image.notes);
     const std::string moment = bdv_moment(timepoint, id);
     if (!file.has(moment)) {
         throw Failure("has no setup " + std::to_string(id) + " at time " + std::to_string(time) +

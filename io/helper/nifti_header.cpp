@@ -10,6 +10,7 @@
 #include <map>
 
 #include "io/byte_order.hpp"
+#include "io/file_grid.hpp"
 #include "io/helper/headers.hpp"
 #include "io/inflate.hpp"
 #include "io/straightened.hpp"
@@ -176,7 +177,7 @@ Vec3 spacings_of(const Header& header, double unit, std::vector<std::string>& no
             throw Failure("its header field 'pixdim' has the number " + text_of(given) +
                           "; correct the header");
         }
-        const bool sensible = given * unit >= least_length;
+        const bool sensible = is_file_spacing(given * unit);
         spacings[static_cast<Eigen::Index>(a)] = sensible ? given * unit : 1;
     }
     return spacings;

@@ -170,7 +170,7 @@ std::vector<Field> fields_of(const std::vector<NamedFile>& files) {
 }
 
 /// "'_z000' to '_z009', '_ch00' to '_ch01'"
-std::string text_of(const std::vector<Field>& fields, const Name& name) {
+std::string text_of_fields(const std::vector<Field>& fields, const Name& name) {
     std::string text;
     for (const Field& field : fields) {
         const std::string before = field.part > 0 ? name[field.part - 1].text : "";
@@ -182,7 +182,7 @@ std::string text_of(const std::vector<Field>& fields, const Name& name) {
 
 [[noreturn]] void fail_unclear(const std::vector<Field>& fields, const Name& name) {
     throw Failure("the names of its slices differ in more than one place (" +
-                  text_of(fields, name).substr(0, 200) +
+                  text_of_fields(fields, name).substr(0, 200) +
                   "), and which of them counts slices is not certain; put the slices of one volume "
                   "into a folder of their own, or write z, c and t before the numbers");
 }
@@ -265,10 +265,11 @@ NumberedSlices one_stack(std::vector<NamedFile> files, const std::vector<Field>&
     }
     check_missing(missing.value_or(0));
     if (fields.size() == 1 && fields[0].is_of_others()) {
-        slices.notes.push_back(
-            "the numbers in its names (" + text_of(fields, files.front().name).substr(0, 100) +
-            ") seem to count " + (fields[0].counts == Counts::times ? "times" : "channels") +
-            ": they were taken as slices");
+        slices.notes.push_back("the numbers in its names (" +
+                               text_of_fields(fields, files.front().name).substr(0, 100) +
+                               ") seem to count " +
+                               (fields[0].counts == Counts::times ? "times" : "channels") +
+                               ": they were taken as slices");
     }
     return slices;
 }
@@ -281,7 +282,8 @@ NumberedSlices first_channel(std::vector<NamedFile> files, const std::vector<Fie
     for (const auto& [counts, field] : roles) all *= field.values.size();
     if (all != files.size()) {
         throw Failure("it has " + std::to_string(files.size()) + " slices where their names (" +
-                      text_of(fields, first).substr(0, 200) + ") count " + std::to_string(all) +
+                      text_of_fields(fields, first).substr(0, 200) + ") count " +
+                      std::to_string(all) +
                       "; copy the missing ones, or put those of one volume into a folder of their "
                       "own");
     }

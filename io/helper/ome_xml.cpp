@@ -135,7 +135,9 @@ void take_pages(const XmlElement& pixels, const std::string& own, OmeImage& imag
         files.take(data);
         const std::int64_t page = whole(data, "IFD", 0, 0);
         const bool alone = *data.attribute("IFD").value() != '\0';
-        const std::int64_t count = whole(data, "PlaneCount", alone ? 1 : planes, 0);
+        // Before 2008 it was NumPlanes.
+        const std::int64_t told = whole(data, "NumPlanes", alone ? 1 : planes, 0);
+        const std::int64_t count = whole(data, "PlaneCount", told, 0);
         if (count > planes) throw Failure("its OME-XML tells of more planes than it has");
         put_pages(
             image, order,
@@ -180,7 +182,9 @@ void set_spacing(OmeImage& image, const Vec3& spacings, const std::array<std::st
 }
 
 void take_counts(OmeImage& image, const CountedPages& counted) {
-    const std::vector<std::uint32_t> in_file = image.pages;
+    std::vector<std::uint32_t> in_file;
+    for (const std::size_t plane : counted.planes) in_file.push_back(image.pages.at(plane));
+    if (in_file.empty()) in_file = image.pages;
     image.format = counted.format;
     image.sizes = counted.sizes;
     put_pages(image, PlaneOrder(counted.order), {0, 0, 0}, 0, std::ssize(in_file));
@@ -195,8 +199,10 @@ void take_counts(OmeImage& image, const CountedPages& counted) {
 bool is_ome_xml(const std::string& description) {
     constexpr std::size_t byte_order_mark = 3;
     const bool is_xml = trimmed(description).find('<') <= byte_order_mark;
-    return is_xml && (description.find("/OME>") != std::string::npos ||
-                      description.find(":OME>") != std::string::npos);  // with a prefix
+    // Its end may be cut off, which is refused as no XML.
+    return is_xml && (description.find("<OME") != std::string::npos ||
+                      description.find(":OME ") != std::string::npos ||  // with a prefix
+                      description.find(":OME>") != std::string::npos);
 }
 
 OmeImage ome_image(const std::string& xml, std::vector<std::string>& notes) {

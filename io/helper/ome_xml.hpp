@@ -38,8 +38,9 @@ struct CountedPages {
     std::string format;
     std::string order = "XYCZT";                 ///< of the pages
     std::array<std::int64_t, 3> sizes{1, 1, 1};  ///< of z, channels, times
-    Vec3 metres = Vec3::Zero();  ///< between samples along x, y, z; 0: it does not say
-    double seconds = 0;          ///< between times; 0: it does not say
+    Vec3 metres = Vec3::Zero();            ///< between samples along x, y, z; 0: it does not say
+    double seconds = 0;                    ///< between times; 0: it does not say
+    std::vector<std::size_t> planes = {};  ///< those that count, in order; empty: all
 };
 
 /// Gives its planes the pages that it has, as many as are counted.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -12,6 +13,7 @@
 #include "io/byte_order.hpp"
 #include "io/helper/headers.hpp"
 #include "io/system/number.hpp"
+#include "palpate/io/error.hpp"
 
 namespace palpate::io {
 namespace {
@@ -125,9 +127,28 @@ class CommasSeen {
     bool joins_ = false, some_ = false, lists_ = false;
 };
 
+[[noreturn]] void fail_to_read(const DataPlace& place, int error) {
+    const char* const advice = error == EACCES || error == EPERM ? "; allow this user to read it"
+                               : error == ENOENT                 ? "; put it beside the header"
+                               : error == EIO                    ? "; check the disk"
+                                                                 : "; correct the header, or copy "
+                                                                   "the file again";
+    throw Failure("its data file '" + place.file.filename().string() + "' cannot be read (" +
+                  reason(error) + ")" + advice);
+}
+
+/// At the first byte of a place.
+std::ifstream opened(const DataPlace& place) {
+    errno = 0;
+    std::ifstream in(place.file, std::ios::binary);
+    if (!in) fail_to_read(place, errno);
+    in.seekg(static_cast<std::streamoff>(place.offset));
+    return in;
+}
+
 /// Numbers of a text, all of them counted, as many as the header says converted.
 void read_text(VolumeHeader& header, DataPlace& place, const ByteSink& sink) {
-    std::ifstream in(place.file, std::ios::binary);
+    std::ifstream in = opened(place);
     in.seekg(static_cast<std::streamoff>(place.offset + place.skip));
     in.imbue(std::locale(in.getloc(), new CommasAreBlank));
     place.skip = 0;
@@ -164,17 +185,13 @@ void read_text(VolumeHeader& header, DataPlace& place, const ByteSink& sink) {
 std::uint64_t available_at(const DataPlace& place) {
     std::error_code error;
     const std::uint64_t file_bytes = std::filesystem::file_size(place.file, error);
-    if (error) {
-        throw Failure("its data file '" + place.file.filename().string() + "' cannot be read (" +
-                      error.message() + "); put it beside the header");
-    }
+    if (error) fail_to_read(place, error.value());
     return file_bytes - std::min(place.offset, file_bytes);
 }
 
 /// Whether the bytes there begin as those of gzip or zlib do.
 bool begins_packed(const DataPlace& place) {
-    std::ifstream in(place.file, std::ios::binary);
-    in.seekg(static_cast<std::streamoff>(place.offset));
+    std::ifstream in = opened(place);
     std::array<char, 2> bytes{};
     in.read(bytes.data(), bytes.size());
     const auto number = big_endian<std::uint16_t>(std::as_bytes(std::span(bytes)));
@@ -183,7 +200,7 @@ bool begins_packed(const DataPlace& place) {
 
 /// Behind the samples, a line ends, and words follow, or nothing does.
 void check_words_behind(const DataPlace& place, std::uint64_t bytes) {
-    std::ifstream in(place.file, std::ios::binary);
+    std::ifstream in = opened(place);
     in.seekg(static_cast<std::streamoff>(place.offset + place.skip + bytes));
     constexpr int end = std::char_traits<char>::eof();
     const int first = in.get();
@@ -211,14 +228,19 @@ void check_length(VolumeHeader& header, const DataPlace& place) {
 void read_raw_bytes(VolumeHeader& header, const DataPlace& place, const ByteSink& sink) {
     check_length(header, place);
     SampleBytes samples(header, place, sink);
-    std::ifstream in(place.file, std::ios::binary);
-    in.seekg(static_cast<std::streamoff>(place.offset));
+    std::ifstream in = opened(place);
     std::vector<std::byte> chunk(chunk_bytes);
     for (std::uint64_t left = place.skip + header.bytes_each(); left > 0;) {
+        errno = 0;
         in.read(reinterpret_cast<char*>(chunk.data()),
                 static_cast<std::streamsize>(std::min<std::uint64_t>(left, chunk.size())));
         const auto got = static_cast<std::size_t>(in.gcount());
-        if (got == 0) throw Failure("its data cannot be read to the end; check the disk");
+        if (got == 0 && errno != 0) fail_to_read(place, errno);
+        if (got == 0) {
+            throw Failure(
+                "its samples became fewer while they were read; read it again when no "
+                "program writes it");
+        }
         samples({chunk.data(), got});
         left -= got;
     }

@@ -80,6 +80,8 @@ void take_scifio_axes(Description& description) {
             description["spacing"] = scales[i];
         } else if (axis == "time") {
             description["frames"] = lengths[i];
+            if (!scales[i].empty()) description["finterval"] = scales[i];
+            if (!units[i].empty()) description["tunit"] = units[i];
             frames = length;
         } else if (axis != "x" && axis != "y") {
             channels *= length;
@@ -149,6 +151,10 @@ CountedPages told_by_image_j(const std::string& text, std::size_t pages,
     if (images > static_cast<double>(pages)) {
         throw Failure("tells of " + text_of(images) + " slices, but has " + std::to_string(pages) +
                       "; it is cut off: copy it again");
+    }
+    if (description.contains("images") && images < static_cast<double>(pages)) {
+        notes.push_back("its description counts " + text_of(images) + " of its " +
+                        std::to_string(pages) + " pages: all of them were taken");
     }
     const double frames = std::max(count_in(description, "frames"), 1.0);
     const double slices = static_cast<double>(pages) / frames / channels;
@@ -229,40 +235,76 @@ std::int64_t length_of(const std::string& list) {
     return count;
 }
 
-/// Its frames of a slice follow each other, or its volumes do.
+/// What ScanImage counts. Pages follow each other by channel, frame, slice and volume.
+struct ScanImageCounts {
+    std::int64_t channels = 1;
+    std::int64_t frames = 1;  ///< of a slice, as they are stored; 0: as many as there are
+    std::int64_t slices = 1;
+    std::int64_t flyback = 0;  ///< frames behind each volume that belong to no slice
+    std::int64_t volumes = 1;
+};
+
+std::optional<ScanImageCounts> scan_image_counts(const std::string& lines) {
+    const auto number = [&](const std::string& key, std::int64_t missing = 1) {
+        const std::string text = value_of(lines, key);
+        if (text.empty()) return missing;
+        const double told = number_from<double>(text).value_or(0);
+        return told >= 1 && told <= 1 << 20 && told == std::floor(told) ? std::int64_t(told) : 0;
+    };
+    std::string saved;
+    for (const char* key : {"hChannels.channelSave", "SI5.channelsSave", "SI4.channelsSave"}) {
+        if (saved.empty()) saved = value_of(lines, key);
+    }
+    if (saved.empty()) return {};
+    ScanImageCounts counts{std::max<std::int64_t>(length_of(saved), 1)};
+    counts.frames = number("hStackManager.framesPerSlice");
+    const std::int64_t averaged = number("hScan2D.logAverageFactor");
+    if (averaged > 1 && counts.frames % averaged == 0) counts.frames /= averaged;
+    counts.slices = std::max<std::int64_t>(
+        number("hStackManager.actualNumSlices", number("hStackManager.numSlices")), 1);
+    counts.volumes = std::max<std::int64_t>(number("hStackManager.numVolumes"), 1);
+    if (value_of(lines, "hFastZ.enable") == "true") {
+        const std::int64_t kept = number("hStackManager.numFramesPerVolume", 0),
+                           all = number("hStackManager.numFramesPerVolumeWithFlyback", 0);
+        counts.flyback =
+            kept > 0 && all >= kept ? all - kept : number("hFastZ.numDiscardFlybackFrames", 0);
+    }
+    return counts;
+}
+
+/// Its frames of a slice follow each other, or its volumes do, with or without the frames between.
 std::optional<CountedPages> told_by_scan_image(TIFF* tiff, const std::string& description,
                                                std::size_t planes,
                                                std::vector<std::string>& notes) {
     const char* software = nullptr;
     TIFFGetField(tiff, TIFFTAG_SOFTWARE, &software);
     const std::string lines = (software ? std::string(software) + '\n' : "") + description;
-    std::string saved;
-    for (const char* key : {"hChannels.channelSave", "SI5.channelsSave", "SI4.channelsSave"}) {
-        if (saved.empty()) saved = value_of(lines, key);
-    }
-    if (saved.empty()) return {};
-    const auto number = [&](const char* key) {
-        const double told = number_from<double>(value_of(lines, key)).value_or(1);
-        return told >= 1 && told <= 1 << 20 && told == std::floor(told) ? std::int64_t(told) : 0;
-    };
-    const auto all = static_cast<std::int64_t>(planes);
-    const std::int64_t channels = std::max<std::int64_t>(length_of(saved), 1);
-    const std::int64_t frames = number("hStackManager.framesPerSlice");  // 0: as many as there are
-    const std::int64_t slices = number(value_of(lines, "hStackManager.actualNumSlices").empty()
-                                           ? "hStackManager.numSlices"
-                                           : "hStackManager.actualNumSlices");
-    CountedPages told{"ScanImage", "XYCZT", {all / channels, channels, 1}};
-    if (frames == 0) {
-        told.sizes = {1, channels, all / channels};
-    } else if (frames > 1) {
-        told.order = "XYCTZ";
-        told.sizes = {all / channels / frames, channels, frames};
-    } else if (slices > 1 && all % (channels * slices) == 0) {
-        told.sizes = {slices, channels, all / channels / slices};
-    } else if (all > channels) {
+    const auto counts = scan_image_counts(lines);
+    if (!counts) return {};
+    auto [channels, frames, slices, flyback, volumes] = *counts;
+    const auto all = static_cast<std::int64_t>(planes) / channels;
+    CountedPages told{"ScanImage", "XYCZT", {all, channels, 1}};
+    if (frames == 0) told.sizes = {1, channels, all};
+    if (frames == 0 || all * channels != static_cast<std::int64_t>(planes)) return told;
+    const bool lacks_slices = frames > 1 && slices == 1 && volumes == 1;
+    // A scan that was ended early has fewer slices.
+    if ((all < frames * slices || lacks_slices) && all % frames == 0) slices = all / frames;
+    std::int64_t period = frames * slices + flyback;
+    if (all % period != 0 || all == volumes * frames * slices) period = frames * slices;
+    if ((frames == 1 && slices == 1 && all > 1) || all % period != 0) {
         notes.emplace_back(
             "ScanImage does not say whether its pages are slices or times: they were taken as "
             "slices");
+        return told;
+    }
+    told.sizes = {slices, channels, all / period * frames};
+    for (std::int64_t t = 0; t < told.sizes[2]; ++t) {
+        for (std::int64_t z = 0; z < slices; ++z) {
+            for (std::int64_t c = 0; c < channels; ++c) {
+                const std::int64_t page = t / frames * period + z * frames + t % frames;
+                told.planes.push_back(static_cast<std::size_t>(page * channels + c));
+            }
+        }
     }
     return told;
 }
@@ -413,7 +455,7 @@ CountedPages counted_pages(TIFF* tiff, const std::string& description, const Tif
         told = told_by_axes(by_tifffile, planes);
         check_shape(by_tifffile, first, planes, told.has_value(), notes);
     }
-    if (told) check_product(*told, planes);
+    if (told && told->planes.empty()) check_product(*told, planes);
     if (!told && planes > 1 && description.empty()) note_own_tags(tiff, notes);
     return told ? *told : told_by_image_j(description, planes, notes);
 }

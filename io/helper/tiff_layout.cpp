@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <numeric>
 #include <optional>
 
@@ -77,6 +78,28 @@ std::optional<TiffSeries> series_at(TIFF* tiff, std::size_t page) {
                       shape_in(told)};
 }
 
+/// Whether another page follows the one at this offset. libtiff ends in silence where that is an
+/// earlier one.
+bool leads_on(const fs::path& file, std::uint64_t offset) {
+    std::ifstream in(file, std::ios::binary);
+    const auto number = [&](std::uint64_t at, std::size_t bytes, bool is_little) {
+        unsigned char read[8] = {};
+        in.seekg(static_cast<std::streamoff>(at));
+        in.read(reinterpret_cast<char*>(read), static_cast<std::streamsize>(bytes));
+        std::uint64_t value = 0;
+        for (std::size_t i = 0; in && i < bytes; ++i) {
+            value = value << 8 | read[is_little ? bytes - 1 - i : i];
+        }
+        return value;
+    };
+    const bool is_little = number(0, 1, true) == 'I';
+    const bool is_big_tiff = number(2, 2, is_little) == 43;
+    const std::size_t width = is_big_tiff ? 8 : 2, entry = is_big_tiff ? 20 : 12;
+    const std::uint64_t entries = number(offset, width, is_little);
+    return entries <= 65535 &&
+           number(offset + width + entries * entry, is_big_tiff ? 8 : 4, is_little) != 0;
+}
+
 }  // namespace
 
 std::string description_of(TIFF* tiff) {
@@ -107,7 +130,9 @@ TiffPages pages_of(TIFF* tiff, const fs::path& file) {
         }
         pages.directories.push_back(TIFFCurrentDirOffset(tiff));
         if (!first_tiff_error().empty()) fail_damaged_tiff(file);
-        if (TIFFReadDirectory(tiff) == 0) break;
+        if (TIFFReadDirectory(tiff) != 0) continue;
+        pages.is_circle = leads_on(file, pages.directories.back());
+        break;
     }
     if (!first_tiff_error().empty() || pages.whole.empty()) fail_damaged_tiff(file);
     return pages;
@@ -126,6 +151,11 @@ TiffLayout layout_of(TIFF* tiff, const fs::path& file, std::vector<std::string>&
     const std::string description = description_of(tiff);
     TiffPages pages = pages_of(tiff, file);
     TIFFSetDirectory(tiff, 0);
+    if (pages.is_circle) {
+        notes.push_back("its pages lead in a circle: the " +
+                        std::to_string(pages.directories.size()) +
+                        " before the first one again were taken, and others may be missing");
+    }
     TiffLayout layout;
     layout.directories = std::move(pages.directories);
     std::vector<std::string> of_page;  // said again when it is read

@@ -43,6 +43,7 @@ struct TiffPages {
     std::vector<std::uint32_t> whole, reduced;
     std::vector<std::uint64_t> directories;
     std::vector<TiffSeries> series;
+    bool is_circle = false;  ///< the last page leads back to an earlier one
 };
 TiffPages pages_of(TIFF* tiff, const std::filesystem::path& file);
 

@@ -63,9 +63,14 @@ void check_surplus(TIFF* tiff, const fs::path& file, const TiffPage& page) {
                   "; correct its size or BitsPerSample, or export it again");
 }
 
+/// Some writers store no tiles or strips that have nothing but zeros: they lie nowhere.
+bool is_left_out(TIFF* tiff, std::uint32_t piece) {
+    return TIFFGetStrileOffset(tiff, piece) == 0 && TIFFGetStrileByteCount(tiff, piece) == 0;
+}
+
 /// Strips are tiles as wide as the page, the last of which has the rows that are left.
 void read_pieces(TIFF* tiff, const fs::path& file, const TiffPage& page, std::byte* to,
-                 const Request& request) {
+                 const Request& request, std::vector<std::string>& notes) {
     const bool tiled = TIFFIsTiled(tiff) != 0;
     std::uint32_t width = page.width, height = page.height;
     if (tiled) {
@@ -86,10 +91,15 @@ void read_pieces(TIFF* tiff, const fs::path& file, const TiffPage& page, std::by
         const std::uint32_t rows = std::min(height, page.height - y);
         for (std::uint32_t x = 0; x < page.width; x += width) {
             const std::uint32_t number = tiled ? TIFFComputeTile(tiff, x, y, 0, 0) : y / height;
-            check_deflate(tiff, file, number, tiled);
             const auto bytes = static_cast<tmsize_t>((tiled ? height : rows) * piece_row);
             const auto read = tiled ? TIFFReadEncodedTile : TIFFReadEncodedStrip;
-            if (read(tiff, number, piece.data(), bytes) != bytes) fail_damaged_tiff(file);
+            if (is_left_out(tiff, number)) {
+                std::ranges::fill(piece, std::byte{0});
+                add_note(notes, "some parts of its pages are not stored: their samples are 0");
+            } else {
+                check_deflate(tiff, file, number, tiled);
+                if (read(tiff, number, piece.data(), bytes) != bytes) fail_damaged_tiff(file);
+            }
             const std::size_t columns = std::min(width, page.width - x);
             for (std::uint32_t r = 0; r < rows; ++r) {
                 std::memcpy(to + (y + r) * row + std::size_t{x} * page.bits / 8,
@@ -191,7 +201,7 @@ Result read_slices(const std::vector<Slice>& slices, const TiffLayout& layout,
             read_plain(tiff.get(), slice.file, layout.plain_from + slice.page * page_samples.size(),
                        size_of(page.stored), page_samples);
         } else {
-            read_pieces(tiff.get(), slice.file, page, page_samples.data(), request);
+            read_pieces(tiff.get(), slice.file, page, page_samples.data(), request, result.notes);
         }
         if (!first_tiff_error().empty()) fail_damaged_tiff(slice.file);
         if (page.is_packed()) unpack_bits(page, page_samples);

@@ -58,9 +58,10 @@ CsvReader::CsvReader(std::string_view text, std::string name, CommentSink commen
 
 bool CsvReader::next_line() {
     while (!rest_.empty()) {
-        const auto end = rest_.find('\n');
+        const auto end = std::min(rest_.find_first_of("\r\n"), rest_.size());
         const auto text = without_blanks(rest_.substr(0, end));
-        rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+        rest_.remove_prefix(end);
+        rest_.remove_prefix(rest_.starts_with("\r\n") ? 2 : std::min<std::size_t>(1, rest_.size()));
         ++line_;
         if (text.empty()) continue;
         if (text[0] == '#') {

@@ -48,6 +48,15 @@ Head read_head(const std::string& comments, const std::string& name) {
     return {};
 }
 
+/// All lines that are whole: those with an end, and the last one of a recording, which shows its
+/// own end. Editors may leave out the end of the last line.
+std::string_view whole_events(std::string_view text) {
+    const std::string_view whole = whole_lines(text);
+    const std::string_view rest = text.substr(whole.size());
+    if (!rest.starts_with('#') || !rest.substr(1).starts_with(end_mark)) return whole;
+    return parsed_or_discarded(rest.substr(1 + end_mark.size())).is_object() ? text : whole;
+}
+
 }  // namespace
 
 struct RecordingReader::Rows {
@@ -84,7 +93,7 @@ struct RecordingReader::Rows {
           name(std::move(called)),
           hand(its_hand),
           ticks(hands),
-          csv(whole_lines(text), name, [this](std::string_view comment) { on_comment(comment); }),
+          csv(whole_events(text), name, [this](std::string_view comment) { on_comment(comment); }),
           trace(csv),
           position(csv, "device"),
           status(csv.column("status")),

@@ -45,6 +45,19 @@ ResultFolder::~ResultFolder() {
     if (lock_ >= 0) ::close(lock_);
 }
 
+void ResultFolder::make(const std::function<void(const fs::path& part)>& results) const {
+    try {
+        results(part_);
+    } catch (const OutputError& e) {
+        std::string text = e.what();
+        const std::string hidden = part_.string(), shown = folder_.string();
+        for (std::size_t at = 0; (at = text.find(hidden, at)) != text.npos; at += shown.size()) {
+            text.replace(at, hidden.size(), shown);
+        }
+        throw OutputError(text);
+    }
+}
+
 void ResultFolder::complete() {
     if (lock_ >= 0 && !synchronise_all(lock_)) {
         throw OutputError(folder_.string() + ": " + reason(errno) + ": check the disk");

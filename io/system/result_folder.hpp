@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,8 @@ class ResultFolder {
 
     /// Where to make the results.
     const std::filesystem::path& part() const { return part_; }
+    /// Calls make(part()). An OutputError names the results as they would lie in the folder.
+    void make(const std::function<void(const std::filesystem::path& part)>& results) const;
     /// Puts what was made in place; more may be made and completed after. Throws OutputError, and
     /// std::logic_error for a result that is not among the names: whether it is an input was
     /// not checked.

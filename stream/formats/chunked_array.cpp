@@ -284,7 +284,9 @@ ChunkReader::Index ChunkReader::fetched_index(const Shard& shard, bool again,
         const auto index = std::make_shared<ShardIndex>();
         index->identity = identity;
         const auto number = [&](std::size_t at) {
-            return io::little_endian<std::uint64_t>(std::span(plain).subspan(at));
+            const auto bytes = std::span(plain).subspan(at);
+            return array_.shards->is_index_big_endian ? io::big_endian<std::uint64_t>(bytes)
+                                                      : io::little_endian<std::uint64_t>(bytes);
         };
         for (std::size_t at = 0; at < size; at += 16) {
             index->places.push_back({number(at), number(at + 8)});

@@ -37,6 +37,7 @@ struct Shards {
     std::vector<int> axes;            ///< in the order in which the index counts, the slowest first
     std::vector<Codec> index_codecs;  ///< in the order of decoding
     bool index_at_start = false;
+    bool is_index_big_endian = false;
     /// The file of an array in HDF5 or TIFF. The helper process looks up a shard in it when its
     /// first chunk is needed. Null: each shard is an object that contains its index.
     std::shared_ptr<LocatedFile> file = {};

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "io/chunked_image.hpp"
+#include "io/file_grid.hpp"
 #include "io/units.hpp"
 #include "io/words.hpp"
 #include "palpate/io/error.hpp"
@@ -64,8 +65,15 @@ Roles roles_of(const std::vector<ImageAxis>& axes, std::vector<std::string>& not
     return roles;
 }
 
-double millimetres_of(const ImageAxis& axis, std::vector<std::string>& notes) {
+/// Of the unit of an axis. `others`: the unit of the other axes, or empty.
+double millimetres_of(const ImageAxis& axis, const std::string& others,
+                      std::vector<std::string>& notes) {
     if (const auto millimetres = io::millimetres_in(axis.unit)) return *millimetres;
+    if (const auto millimetres = io::millimetres_in(others)) {
+        io::add_note(notes, "its axis " + axis.name + " has no unit of length, and others have '" +
+                                io::one_line(others.substr(0, 40)) + "': that was taken");
+        return *millimetres;
+    }
     const std::string note = axis.unit.empty()
                                  ? "its metadata give no unit of length: mm were taken"
                                  : "its unit of length '" + io::one_line(axis.unit.substr(0, 40)) +
@@ -123,6 +131,7 @@ class Taking {
         info.notes.insert(info.notes.end(), image.notes.begin(), image.notes.end());
         leave_out_contradictions();
         use_given();
+        for (const Level& level : info.levels) fail_for(io::why_no_file_grid(level.geometry));
         return std::move(volume_);
     }
 
@@ -176,22 +185,40 @@ class Taking {
             }
             level.geometry.size[i] = static_cast<int>(array.shape[a]);
             level.chunk[i] = static_cast<int>(array.chunk[a]);
-            const double unit = millimetres_of(image.axes[a], volume_.info.notes);
-            measured = measured && is_length(image.axes[a].unit);
+            const std::string others = unit_of_space(image, roles);
+            const double unit = millimetres_of(image.axes[a], others, volume_.info.notes);
+            measured = measured && (io::millimetres_in(image.axes[a].unit) ||
+                                    (others.empty() && is_length(image.axes[a].unit)));
             level.geometry.spacing[i] = std::abs(place.scale[a]) * unit;
             level.geometry.origin[i] = place.translation[a] * unit;
             if (place.scale[a] < 0) level.geometry.direction.col(i) *= -1;
         }
         level.geometry.oriented = image.oriented;
         level.geometry.measured = measured;
-        try {
+        try {  // its lengths may yet be given by the caller
             check(level.geometry);
         } catch (const std::invalid_argument& e) {
-            throw BadMetadata(std::string("its place in space is not possible (") + e.what() +
-                              "); correct its metadata");
+            fail_for(e.what());
         }
         level.geometry = orthonormal(level.geometry);
         return level;
+    }
+
+    /// The first one that is known; empty if none is.
+    static std::string unit_of_space(const Image& image, const Roles& roles) {
+        for (const int axis : roles.space) {
+            if (axis < 0) continue;
+            const std::string& unit = image.axes[static_cast<std::size_t>(axis)].unit;
+            if (io::millimetres_in(unit)) return unit;
+        }
+        return {};
+    }
+
+    /// Does nothing if there is no reason.
+    static void fail_for(const std::string& why) {
+        if (why.empty()) return;
+        throw BadMetadata("its place in space is not possible (" + why +
+                          "); correct its metadata, or give the spacing");
     }
 
     /// Sizes of coarser levels are rounded either way, and written scales to some digits.

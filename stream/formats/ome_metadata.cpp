@@ -100,7 +100,8 @@ std::vector<ImageAxis> axes_of(const Json& image) {
             axes.push_back({axis_name(axis), ""});
             continue;
         }
-        const Json& unit = member(axis, "unit");
+        // Some labels of the IDR have "units".
+        const Json& unit = member(axis, axis.contains("unit") ? "unit" : "units");
         std::string name = axis_name(axis.at("name"));
         if (member(axis, "type") == "time") name = "t";
         if (member(axis, "type") == "channel") name = "c";

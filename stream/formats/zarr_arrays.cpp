@@ -67,6 +67,9 @@ double fill_of(const Json& json, const SampleBytes& bytes, bool is_zarr2) {
     if (json.is_null()) fill = 0;
     if (json.is_boolean()) fill = json.get<bool>() ? 1 : 0;
     if (json.is_number()) fill = json.get<double>();
+    if (json.is_number_unsigned()) {  // 2^64 - 1 becomes 2^64
+        fill = std::min(*fill, std::nextafter(std::ldexp(1.0, 64), 0.0));
+    }
     if (json.is_string() && is_float) fill = float_of(json.get<std::string>(), stored);
     if (json.is_string() && is_zarr2 && !is_float) {
         fill = io::number_from<double>(json.get<std::string>());
@@ -171,7 +174,9 @@ void take_index_codecs(const Json& codecs, Shards& shards) {
         const std::string name = name_of(codec);
         if (name == "crc32c") {
             shards.index_codecs.insert(shards.index_codecs.begin(), Codec::crc32c);
-        } else if (name != "bytes" || !is_little(codec, sizeof(std::uint64_t))) {
+        } else if (name == "bytes") {
+            shards.is_index_big_endian = !is_little(codec, sizeof(std::uint64_t));
+        } else {
             throw BadMetadata("the index of its shards is packed with '" + name +
                               "', which is not read; write it with bytes and crc32c");
         }

@@ -151,23 +151,53 @@ class Opening {
         return true;
     }
 
-    /// The series of a bioformats2raw folder are images named 0, 1, ...
+    /// The series of a bioformats2raw folder are those that OME/ lists, or else images named 0, 1,
+    /// ...
     Node first_series() {
-        std::vector<std::string> folders;
-        for (std::size_t i = 0; i < most_series; ++i)
-            folders.push_back(key_below(folder_, std::to_string(i)));
-        auto nodes = nodes_in(objects_, folders, room_);
+        std::vector<std::string> names;
+        for (std::size_t i = 0; i < most_series; ++i) names.push_back(std::to_string(i));
+        names.emplace_back("OME");
+        auto nodes = nodes_below(names);
+        const std::vector<std::string> listed = listed_series(nodes.back().attributes);
+        names.pop_back();
+        nodes.pop_back();
+        if (!listed.empty() && !std::equal(listed.begin(), listed.end(), names.begin())) {
+            names = listed;
+            nodes = nodes_below(names);
+        }
         if (!ome_image(nodes[0].attributes)) return {};
         std::string others;
         for (std::size_t i = 1; i < nodes.size(); ++i) {
-            if (nodes[i].version > 0) others += (others.empty() ? "" : ", ") + std::to_string(i);
+            if (nodes[i].version > 0) others += (others.empty() ? "" : ", ") + names[i];
         }
         if (!others.empty()) {
-            volume_.info.notes.push_back("series 0 was taken; others are " + others +
+            volume_.info.notes.push_back("series " + names[0] + " was taken; others are " + others +
                                          ": give the folder of one to choose it");
         }
-        folder_ = folders[0];
+        folder_ = key_below(folder_, names[0]);
         return std::move(nodes[0]);
+    }
+
+    std::vector<Node> nodes_below(const std::vector<std::string>& names) {
+        std::vector<std::string> folders;
+        for (const std::string& name : names) folders.push_back(key_below(folder_, name));
+        return nodes_in(objects_, folders, room_);
+    }
+
+    /// At most as many as are looked for. Empty if a path is none.
+    static std::vector<std::string> listed_series(const Json& attributes) {
+        const Json ome = member(attributes, "ome");
+        const Json series = member(ome.is_object() ? ome : attributes, "series");
+        std::vector<std::string> all;
+        for (const Json& path : series.is_array() ? series : Json::array()) {
+            if (all.size() == most_series) break;
+            const std::string name = path.is_string() ? path.get<std::string>() : "";
+            const bool is_path = !name.empty() && name.size() <= 200 && name[0] != '/' &&
+                                 ("/" + name + "/").find("/../") == std::string::npos;
+            if (!is_path) return {};
+            all.push_back(name);
+        }
+        return all;
     }
 
     void take_levels(Image& image, int version) {

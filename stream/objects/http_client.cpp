@@ -336,6 +336,7 @@ class CurlClient : public HttpClient {
         curl_easy_setopt(easy, CURLOPT_HEADERDATA, &job);
         curl_easy_setopt(easy, CURLOPT_WRITEFUNCTION, &take_body);
         curl_easy_setopt(easy, CURLOPT_WRITEDATA, &job);
+        if (job.request.is_head) curl_easy_setopt(easy, CURLOPT_NOBODY, 1L);
         if (const auto& range = job.request.range) {
             const std::string text = range->from_end
                                          ? "-" + std::to_string(range->length)
@@ -359,6 +360,12 @@ class CurlClient : public HttpClient {
         curl_easy_getinfo(easy, CURLINFO_RETRY_AFTER, &wait_s);
         job->answer.status = status;
         if (const auto range = content_range_of(easy)) job->answer.whole_size = range->whole;
+        curl_off_t length = -1;
+        curl_easy_getinfo(easy, CURLINFO_CONTENT_LENGTH_DOWNLOAD_T, &length);
+        const bool is_size = status == 200 && header_of(easy, "Content-Encoding").empty();
+        if (job->request.is_head && is_size && length >= 0) {
+            job->answer.whole_size = static_cast<std::uint64_t>(length);
+        }
         job->answer.too_long = job->too_long && !job->request.range;
         job->answer.version =
             header_of(easy, "ETag") + '\n' + header_of(easy, "Last-Modified") + '\n';

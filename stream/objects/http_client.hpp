@@ -1,5 +1,5 @@
-// GET requests over HTTP, many at a time on one thread: kept connections, HTTP/2 where the server
-// has it, bounded numbers, retries, cancelling. Private to stream/.
+// GET and HEAD requests over HTTP, many at a time on one thread: kept connections, HTTP/2 where the
+// server has it, bounded numbers, retries, cancelling. Private to stream/.
 #pragma once
 
 #include <memory>
@@ -17,12 +17,13 @@ struct HttpRequest {
     std::string url;
     std::optional<ByteRange> range = std::nullopt;
     std::uint64_t most = UINT64_MAX;  ///< bytes of the answer, unpacked; more is an error
+    bool is_head = false;             ///< HEAD: the size alone
 };
 
 struct HttpAnswer {
     long status = 0;  ///< of HTTP; 0 if there was no answer
     Bytes body;       ///< of 200 and 206
-    /// [bytes] Of the object that a range was asked of, where the server tells.
+    /// [bytes] Of the object that a range or the size was asked of, where the server tells.
     std::optional<std::uint64_t> whole_size = std::nullopt;
     std::string version;    ///< ETag and Last-Modified, as far as the server tells them
     std::string error;      ///< what went wrong after all attempts; empty: nothing

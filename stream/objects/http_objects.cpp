@@ -74,11 +74,11 @@ class HttpObjects : public Objects {
     }
     Traffic traffic() const override { return traffic_.now(); }
 
-    /// As the answer to a request for the first byte says.
+    /// As the answer to a request for the first byte says, or to one for the size.
     std::optional<std::uint64_t> size_of(const std::string& key) const override {
         const HttpRequest first = first_byte_of(url_of(key));
         HttpAnswer answer = std::move(client_->get({&first, 1}, stop_).front());
-        const auto size = answer.whole_size;
+        const auto size = size_in(answer, first.url, stop_);
         return body_of({.key = key}, std::move(answer)) ? size : std::nullopt;
     }
 
@@ -124,6 +124,15 @@ class HttpObjects : public Objects {
 
     static HttpRequest first_byte_of(std::string url) { return {std::move(url), ByteRange{0, 1}}; }
 
+    /// [bytes] Of an object, of which the answer has a part. Some servers leave its size open
+    /// there ("bytes 0-0/*"), and tell it to HEAD.
+    std::optional<std::uint64_t> size_in(const HttpAnswer& part, const std::string& url,
+                                         const std::stop_token& stop) const {
+        if (part.whole_size || part.status != 206 || !part.error.empty()) return part.whole_size;
+        const HttpRequest head{.url = url, .is_head = true};
+        return client_->get({&head, 1}, stop).front().whole_size;
+    }
+
     static bool is_suffix(const HttpRequest& request) {
         return request.range && request.range->from_end;
     }
@@ -149,8 +158,9 @@ class HttpObjects : public Objects {
             if (!is_suffix(request)) continue;
             const HttpAnswer& told = *answer++;
             const std::uint64_t length = request.range->length;
-            if (!told.error.empty() || told.status != 206 || told.whole_size < length) continue;
-            request.range = ByteRange{*told.whole_size - length, length};
+            if (!told.error.empty() || told.status != 206) continue;
+            const auto size = size_in(told, request.url, stop);
+            if (size >= length) request.range = ByteRange{*size - length, length};
         }
     }
 

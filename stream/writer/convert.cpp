@@ -8,6 +8,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 
+#include "io/file_grid.hpp"
 #include "io/path_json.hpp"
 #include "io/system/growing_folder.hpp"
 #include "palpate/io/address.hpp"
@@ -168,6 +169,9 @@ Converted convert_to_zarr(const Store& from, int level, const fs::path& out,
         throw std::invalid_argument("there are 1 to 256 threads");
     }
     check_zarr_place(out);
+    if (const std::string why = io::why_not_stored(level_of(from, level).geometry); !why.empty()) {
+        throw io::OutputError(out.string() + ": " + why);
+    }
     const auto source = [&](const std::stop_token& stop) { return source_of(from, level, stop); };
     const nlohmann::json before = while_telling(options.progress, source);
     io::GrowingFolder folder =

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "io/file_grid.hpp"
 #include "io/process/helper_process.hpp"
 #include "io/system/system.hpp"
 #include "palpate/io/error.hpp"
@@ -226,6 +227,10 @@ struct GrowingImage::Parts {
 GrowingImage::GrowingImage(fs::path folder, SampleType type, std::vector<CoarserGrid> levels,
                            const ConvertOptions& options, std::string temporary) {
     check_format(options);
+    for (const CoarserGrid& level : levels) {
+        const std::string why = io::why_not_stored(level.geometry);
+        if (!why.empty()) throw std::invalid_argument(why);
+    }
     parts_ = std::make_unique<const Parts>(std::move(folder), type, std::move(levels), options,
                                            std::move(temporary));
 }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "io/file_grid.hpp"
 #include "stream/box_bytes.hpp"
 
 namespace palpate::stream {
@@ -32,7 +33,9 @@ CoarserGrid coarser(const Geometry& finer) {
 std::vector<CoarserGrid> pyramid_of(const Geometry& finest, int chunk) {
     std::vector<CoarserGrid> grids = {{finest, Index3::Ones()}};
     while ((grids.back().geometry.size.array() > chunk).any()) {
-        grids.push_back(coarser(grids.back().geometry));
+        CoarserGrid next = coarser(grids.back().geometry);
+        if (!io::why_no_file_grid(next.geometry).empty()) break;  // it could not be opened
+        grids.push_back(std::move(next));
     }
     return grids;
 }
@@ -48,42 +51,74 @@ SampleBox finer_box(const SampleBox& box, const Index3& factor, const Geometry& 
 
 namespace {
 
-/// The finer samples below a coarser one.
+/// The finer samples below a coarser one. They are read where they lie: this is the innermost loop
+/// of a conversion.
 template <class T>
-struct Below {
-    std::vector<T> samples;  // x fastest
-    T middle{};
+class Below {
+  public:
+    /// `low` to `high` of the samples `finer` of `finer_box`. Both stay with the caller.
+    Below(std::span<const std::byte> finer, const SampleBox& finer_box, const Index3& low,
+          const Index3& high)
+        : box_(finer_box), low_(low), size_(high - low + Index3::Ones()) {
+        first_ = finer.data() + place_in(box_, low_) * sizeof(T);
+    }
 
-    T first() const { return samples.front(); }
+    /// Whether test(sample) holds for one of them, x fastest.
+    template <class Test>
+    bool any(Test&& test) const {
+        const auto row = static_cast<std::size_t>(box_.high[0] - box_.low[0] + 1);
+        const auto plane = row * static_cast<std::size_t>(box_.high[1] - box_.low[1] + 1);
+        for (int z = 0; z < size_[2]; ++z) {
+            for (int y = 0; y < size_[1]; ++y) {
+                const std::size_t before =
+                    plane * static_cast<std::size_t>(z) + row * static_cast<std::size_t>(y);
+                for (int x = 0; x < size_[0]; ++x) {
+                    if (test(sample_at(before + static_cast<std::size_t>(x)))) return true;
+                }
+            }
+        }
+        return false;
+    }
+    T first() const { return sample_at(0); }
+    /// Of two along an axis the second.
+    T middle(const Index3& factor) const {
+        const Index3 at = low_ + (factor / 2).cwiseMin(size_ - Index3::Ones());
+        return sample_at(place_in(box_, at) - place_in(box_, low_));
+    }
     double mean() const {
         double sum = 0;
-        for (const T sample : samples) sum += static_cast<double>(sample);
-        return sum / static_cast<double>(samples.size());
+        any([&](T sample) {
+            sum += static_cast<double>(sample);
+            return false;
+        });
+        return sum / static_cast<double>(size_.cast<std::int64_t>().prod());
     }
     T rounded_mean() const {
         if constexpr (std::is_integral_v<T>) return static_cast<T>(std::lround(mean()));
         return static_cast<T>(mean());
     }
+
+  private:
+    /// `place`: among the samples of the box, from the first one below.
+    T sample_at(std::size_t place) const {
+        T sample;
+        std::memcpy(&sample, first_ + place * sizeof sample, sizeof sample);
+        return sample;
+    }
+
+    const SampleBox& box_;
+    const Index3 low_, size_;
+    const std::byte* first_;
 };
 
 /// Calls visit(below) for each sample of a coarser box.
 template <class T, class Visit>
 void for_each_below(std::span<const std::byte> finer, const SampleBox& finer_box,
                     const Index3& factor, const SampleBox& box, Visit&& visit) {
-    const auto sample_at = [&](const Index3& at) {
-        T sample;
-        std::memcpy(&sample, finer.data() + place_in(finer_box, at) * sizeof sample, sizeof sample);
-        return sample;
-    };
-    Below<T> below;
     for_each_index(box, [&](const Index3& at) {
         const Index3 low = at.cwiseProduct(factor);
         const Index3 high = (low + factor - Index3::Ones()).cwiseMin(finer_box.high);
-        below.samples.clear();
-        for_each_index({low, high},
-                       [&](const Index3& one) { below.samples.push_back(sample_at(one)); });
-        below.middle = sample_at((low + factor / 2).cwiseMin(high));
-        visit(below);
+        visit(Below<T>(finer, finer_box, low, high));
     });
 }
 
@@ -111,7 +146,7 @@ void take_coarser(Coarsening how, SampleType type, std::span<const std::byte> fi
         for_each_below<T>(finer, finer_box, factor, box, [&](const Below<T>& below) {
             const T value = how == Coarsening::mean    ? below.rounded_mean()
                             : how == Coarsening::first ? below.first()
-                                                       : below.middle;
+                                                       : below.middle(factor);
             std::memcpy(to, &value, sizeof value);
             to += sizeof value;
         });
@@ -134,11 +169,11 @@ void CoarseningSeen::look(SampleType type, std::span<const std::byte> finer,
             std::memcpy(&stored, from, sizeof stored);
             from += sizeof stored;
             const auto is_stored = [&](T sample) { return is_same(sample, stored); };
-            const auto is_first = [&](T sample) { return is_same(sample, below.first()); };
+            const auto is_other = [&](T sample) { return !is_same(sample, below.first()); };
             all_first_ = all_first_ && is_stored(below.first());
-            all_middle_ = all_middle_ && is_stored(below.middle);
-            all_below_ = all_below_ && std::ranges::any_of(below.samples, is_stored);
-            if (std::ranges::all_of(below.samples, is_first)) return;
+            all_middle_ = all_middle_ && is_stored(below.middle(factor));
+            all_below_ = all_below_ && below.any(is_stored);
+            if (!below.any(is_other)) return;
             ++telling_;
             means_ += is_mean(stored, below) ? 1 : 0;
         });

@@ -16,7 +16,8 @@ struct CoarserGrid {
 /// The next coarser level: half as fine along the axes with a spacing below twice the least one.
 CoarserGrid coarser(const Geometry& finer);
 
-/// The finest grid and the coarser ones, down to one that fits into a chunk.
+/// The finest grid and the coarser ones, down to one that fits into a chunk, as far as files may
+/// have them (io/file_grid.hpp).
 std::vector<CoarserGrid> pyramid_of(const Geometry& finest, int chunk);
 
 /// The samples of the finer grid that those of `box` are made of.

@@ -75,6 +75,9 @@ TEST(Convert, a_summary_is_printed_as_text_or_json_and_nothing_when_quiet) {
     expect_done(quiet);
     EXPECT_EQ(quiet.out + quiet.err, "");
     EXPECT_FALSE(fs::exists(folder / "a.zarr.partial"));
+    const Outcome one = palpate(folder, "convert a.zarr d.zarr --level 2");
+    expect_done(one);
+    EXPECT_TRUE(contains(one.out, ", 1 level, 1 chunk (")) << one.out;
 }
 
 /// Starts a conversion of `large` and ends it when it has written some chunks.

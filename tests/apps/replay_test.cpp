@@ -272,6 +272,9 @@ TEST(Replay, prints_nothing_else_where_a_table_goes_to_standard_output) {
     EXPECT_TRUE(contains(path.out, "tick,x,y,z\n0,-20,"));
     expect_failure(palpate(folder, line + "-o - --json"), 2, "standard output");
     expect_failure(palpate(folder, line + "-o - --path -"), 2, "two outputs");
+    // Standard output is no file that is read.
+    expect_failure(palpate(folder, "replay synthetic:sphere:24x24x24 --trajectory - -i 50 -o -"), 3,
+                   "-:");
     succeeds(folder, line + "-o /dev/null --path /dev/null");
 }
 

@@ -206,6 +206,17 @@ TEST(Touch, takes_commands_with_a_byte_order_mark_and_the_line_ends_of_windows) 
     succeeds(folder, "touch " + unpaced + " --commands c.txt");
 }
 
+TEST(Touch, takes_names_with_blanks_in_quotes) {
+    const ScratchFolder folder;
+    put_bytes(folder / "c.txt",
+              "0 carve 0,0,0 2\n0.1 save \"my #1 head.nrrd\"  # with a blank\n0.2 quit\n");
+    succeeds(folder, "touch " + unpaced + " --commands c.txt");
+    EXPECT_TRUE(std::filesystem::exists(folder / "my #1 head.nrrd"));
+    put_bytes(folder / "c.txt", "0 save \"my head.nrrd\n");
+    expect_failure(palpate(folder, "touch " + unpaced + " --commands c.txt"), 3,
+                   "without another one after it");
+}
+
 TEST(Touch, refuses_commands_that_it_does_not_understand_before_anything_runs) {
     const ScratchFolder folder;
     const auto refused = [&](const std::string& text, const std::string& reason) {

@@ -212,7 +212,17 @@ TEST(Recording, cut_off_anywhere_it_gives_the_whole_lines_before) {
         const std::string rest = text.substr(0, cut);
         const auto lines = std::ranges::count(rest.substr(static_cast<std::size_t>(first)), '\n');
         EXPECT_EQ(read_all(reader).size(), static_cast<std::size_t>(lines));
-        EXPECT_FALSE(reader.complete());
+        EXPECT_EQ(reader.complete(), cut + 1 == text.size());
+    }
+}
+
+TEST(Recording, without_the_end_of_its_last_line_is_complete) {
+    const ScratchFolder folder;
+    const std::string text = written(random_events(20), folder / "r.csv");
+    for (const std::size_t less : {1, 2, 9}) {
+        io::RecordingReader reader(text.substr(0, text.size() - less), "r.csv");
+        EXPECT_EQ(read_all(reader).size(), 20U);
+        EXPECT_EQ(reader.complete(), less == 1);
     }
 }
 

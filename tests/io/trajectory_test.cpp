@@ -47,6 +47,14 @@ TEST(Trajectory, may_have_comments_blank_lines_spaces_crlf_and_a_byte_order_mark
     EXPECT_EQ(read.position, (std::vector<Vec3>{{1.5, 2e-3, -0.5}, {1, 2, 3}}));
 }
 
+TEST(Trajectory, may_have_the_line_ends_of_old_macintoshes) {
+    const Trajectory read = parse("# a hand\rt,x,y,z\r\r0,1,2,3\r1,4,5,6\r");
+    EXPECT_EQ(read.time, (std::vector<double>{0, 1}));
+    EXPECT_EQ(read.position, (std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}}));
+    expect_refusal("t,x,y,z\r\r0,1,2\r", "line 3");
+    expect_refusal("t,x,y,z\r\n\r\n0,1,2\r\n", "line 3");
+}
+
 TEST(Trajectory, may_have_cells_in_quotes) {
     const Trajectory read = parse("\"\",\"t\" , \"x\",y,\"z\"\n\"a, b\",\"0\",1,\"2\",3\n");
     EXPECT_EQ(read.time, (std::vector<double>{0}));

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "palpate/io/orientation.hpp"
 #include "palpate/io/raw_options.hpp"
 #include "volume_support.hpp"
 
@@ -198,6 +199,19 @@ TEST(meta_image, a_map_of_values_that_is_ignored_is_said) {
     EXPECT_TRUE(said("ElementToIntensityFunctionSlope = 2"));
     EXPECT_TRUE(said("ElementToIntensityFunctionOffset = -1024"));
     EXPECT_FALSE(said("ElementToIntensityFunctionSlope = 1"));
+}
+
+TEST(orientation, of_an_oblique_grid_names_three_different_sides) {
+    // nibabel's aff2axcodes() gives S, L, P.
+    Geometry grid;
+    grid.direction << 0.656692, 0.676962, -0.332383, -0.360389, 0.668844, 0.650205, 0.662477,
+        -0.307197, 0.683194;
+    EXPECT_EQ(orientation_of(grid), "SLP");
+    std::mt19937 random(5);
+    for (int i = 0; i < 200; ++i) {
+        grid = random_geometry(random, true, i % 2 == 0);
+        EXPECT_NO_THROW((void)direction_from(orientation_of(grid))) << "\n" << grid.direction;
+    }
 }
 
 TEST(volume_numbers, may_begin_with_one_plus_sign) {

@@ -131,6 +131,18 @@ TEST(read_volume, a_file_without_permission_is_refused) {
     EXPECT_TRUE(contains(refusal(folder / "secret.nrrd"), "permission"));
 }
 
+TEST(read_volume, samples_beside_a_header_without_permission_are_refused_as_such) {
+    if (geteuid() == 0) GTEST_SKIP() << "root may read everything";
+    const ScratchFolder folder;
+    std::mt19937 random(16);
+    write_volume(random_volume<std::uint8_t>(random, random_geometry(random, false, false)),
+                 folder / "a.nhdr");
+    std::filesystem::permissions(folder / "a.raw", std::filesystem::perms::none);
+    const std::string message = refusal(folder / "a.nhdr");
+    EXPECT_TRUE(contains(message, "'a.raw' cannot be read (Permission denied)")) << message;
+    EXPECT_TRUE(contains(message, "allow this user to read it")) << message;
+}
+
 TEST(read_volume, names_with_blanks_quotes_and_foreign_bytes_are_read) {
     const ScratchFolder folder;
     std::mt19937 random(15);

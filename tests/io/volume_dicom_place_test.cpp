@@ -1,5 +1,6 @@
 // The places of DICOM slices whose headers give them oddly, only in part, or for several bodies.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "volume_dicom_changed.hpp"
@@ -148,6 +149,142 @@ TEST(dicom_place, that_a_slice_lacks_among_others_is_asked_for) {
     }
     const std::string message = refusal(folder.path());
     EXPECT_TRUE(contains(message, "no place, the first in '2.dcm'")) << message;
+}
+
+/// Two moments, or stations, of four slices each, the second one `shift` mm further within its
+/// plane.
+void put_two(const ScratchFolder& folder, double shift) {
+    for (int i = 0; i < 8; ++i) {
+        TestSlice slice = usual_slice(i);
+        slice.acquisition = 1 + i / 4;
+        slice.position =
+            "10\\" + std::to_string(20 + shift * (i / 4)) + "\\" + std::to_string(2 * (i % 4));
+        put_number(folder, slice);
+    }
+}
+
+TEST(dicom_place, of_stations_side_by_side_is_that_of_two_series_and_no_times) {
+    for (const double shift : {-300.0, 0.8}) {
+        const ScratchFolder folder;
+        put_two(folder, shift);
+        const std::string message = refusal(folder.path());
+        EXPECT_TRUE(contains(message, "has 2 DICOM series")) << message;
+        for (const double station : {0.0, shift}) {
+            ReadOptions options;
+            options.series = (station == 0) == (shift > 0) ? "1" : "2";
+            const VolumeFile file = read_volume(folder.path(), options);
+            EXPECT_EQ(file.time_steps, 1);
+            EXPECT_EQ(file.volume.geometry().size, Index3(4, 3, 4));
+            EXPECT_TRUE(file.volume.geometry().origin.isApprox(Vec3(10, 20 + station, 0)))
+                << file.volume.geometry().origin.transpose();
+            EXPECT_EQ(file.volume.sample({0, 0, 1}), station == 0 ? 100 : 500);
+        }
+    }
+}
+
+TEST(dicom_place, of_times_less_than_half_a_pixel_apart_is_noted) {
+    for (const double shift : {0.1, 0.001}) {
+        const ScratchFolder folder;
+        put_two(folder, shift);
+        const VolumeFile file = read_volume(folder.path());
+        EXPECT_EQ(file.time_steps, 2);
+        EXPECT_EQ(contains(all_notes(file), "shifted against each other within their plane"),
+                  shift == 0.1)
+            << all_notes(file);
+    }
+}
+
+TEST(dicom_place, of_tilted_stations_is_that_of_two_series) {
+    const ScratchFolder folder;
+    for (int i = 0; i < 8; ++i) {
+        TestSlice slice = usual_slice(i);
+        const int k = i % 4;
+        slice.position =
+            "10\\" + std::to_string(20 + k + 300 * (i / 4)) + "\\" + std::to_string(2 * k);
+        put_number(folder, slice);
+    }
+    ReadOptions options;
+    options.series = "2";
+    const VolumeFile file = read_volume(folder.path(), options);
+    EXPECT_EQ(file.volume.geometry().origin.y(), 320);
+    EXPECT_TRUE(contains(all_notes(file), "gantry tilt")) << all_notes(file);
+}
+
+/// The values of the first of two moments, whose times are these elements of the header.
+double first_of(const std::string& earlier, const std::string& later) {
+    const ScratchFolder folder;
+    for (int i = 0; i < 4; ++i) {
+        TestSlice slice = usual_slice(i);
+        slice.position = "10\\20\\" + std::to_string(2 * (i % 2));
+        // Numbers run against time.
+        slice.pixels.assign(12, i < 2 ? std::uint16_t{2} : std::uint16_t{1});
+        const std::string data = with(dicom_data_set(slice), 0x8, 0x60, i < 2 ? later : earlier);
+        put_bytes(folder / (std::to_string(i) + ".dcm"), file_of(slice, data));
+    }
+    const VolumeFile file = read_volume(folder.path());
+    EXPECT_EQ(file.time_steps, 2);
+    return file.volume.sample({0, 0, 0});
+}
+
+TEST(dicom_place, of_two_times_has_them_in_the_order_of_utc) {
+    const auto whole = [](const char* moment) { return element(0x8, 0x2a, "DT", moment); };
+    EXPECT_EQ(first_of(whole("20201025025930+0200"), whole("20201025020010+0100")), 1);
+    EXPECT_EQ(first_of(whole("20200501001000+0100"), whole("20200430233000+0000")), 1);
+    EXPECT_EQ(first_of(whole("20201025010000-0300"), whole("20201025010000.5-0330")), 1);
+    const auto time = [](const char* moment, const char* zone) {
+        return element(0x8, 0x22, "DA", "20201025") + element(0x8, 0x32, "TM", moment) +
+               (zone ? element(0x8, 0x201, "SH", zone) : std::string());
+    };
+    EXPECT_EQ(first_of(time("025930", "+0200"), time("020010", "+0100")), 1);
+    EXPECT_EQ(first_of(time("93015.5", nullptr), time("101500", nullptr)), 1);
+}
+
+/// Two slices at each of four places, with these elements of 0018, which change their order half
+/// way, in the files that folder / "N.dcm" are.
+void put_in_turn(const ScratchFolder& folder, std::uint16_t group_element,
+                 const std::array<const char*, 2>& values) {
+    for (int i = 0; i < 8; ++i) {
+        TestSlice slice = usual_slice(i);
+        const int place = i / 2, which = (i % 2) ^ (place / 2);
+        slice.position = "10\\20\\" + std::to_string(2 * place);
+        slice.pixels.assign(12, static_cast<std::uint16_t>(1 + which));
+        const std::string value =
+            element(0x18, group_element, "LO", values[static_cast<std::size_t>(which)]);
+        put_bytes(folder / (std::to_string(i) + ".dcm"),
+                  file_of(slice, with(dicom_data_set(slice), 0x20, 0xd, value)));
+    }
+}
+
+void expect_all(const VolumeFile& file, double value) {
+    ASSERT_EQ(file.volume.geometry().size, Index3(4, 3, 4));
+    EXPECT_EQ(file.volume.minimum(), value);
+    EXPECT_EQ(file.volume.maximum(), value);
+}
+
+TEST(dicom_place, of_two_inversion_times_or_flip_angles_has_one_in_each_step) {
+    for (const std::uint16_t element : {std::uint16_t{0x82}, std::uint16_t{0x1314}}) {
+        const ScratchFolder folder;
+        put_in_turn(folder, element, {"100", "900"});
+        for (int step = 0; step < 2; ++step) {
+            ReadOptions options;
+            options.time_step = step;
+            expect_all(read_volume(folder.path(), options), 1 + step);
+        }
+    }
+}
+
+TEST(dicom_place, of_two_energies_or_kernels_is_that_of_two_series) {
+    for (const bool is_kernel : {false, true}) {
+        const ScratchFolder folder;
+        put_in_turn(folder, is_kernel ? 0x1210 : 0x60, {"100", "140"});
+        ReadOptions options;
+        for (int series = 1; series <= 2; ++series) {
+            options.series = std::to_string(series);
+            const VolumeFile file = read_volume(folder.path(), options);
+            EXPECT_EQ(file.time_steps, 1);
+            expect_all(file, series);
+        }
+    }
 }
 
 TEST(dicom_place, of_two_acquisitions_nearly_at_one_place_is_no_stack) {

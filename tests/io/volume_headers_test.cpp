@@ -127,6 +127,25 @@ TEST(nrrd, names_and_colours_of_a_segmentation_are_read) {
     EXPECT_LE(odd.values.labels[0].name.size(), 64U);
 }
 
+TEST(nrrd, segments_of_old_versions_of_slicer_are_one_in_each_layer) {
+    const ScratchFolder folder;
+    put_bytes(folder / "a.seg.nrrd",
+              "NRRD0004\ntype: uint8\ndimension: 4\nspace: left-posterior-superior\n"
+              "sizes: 2 4 3 1\nspace directions: none (1,0,0) (0,1,0) (0,0,1)\n"
+              "kinds: list domain domain domain\nencoding: raw\n"
+              "Segment0_ID:=Segment_1\nSegment0_Name:=bone\n"
+              "Segment1_ID:=Segment_2\nSegment1_Name:=vessel\n\n" +
+                  counting(24));
+    for (int layer = 0; layer < 2; ++layer) {
+        ReadOptions options;
+        options.time_step = layer;
+        const auto labels = read_volume(folder / "a.seg.nrrd", options).values.labels;
+        ASSERT_EQ(labels.size(), 1U);
+        EXPECT_EQ(labels[0].value, 1);
+        EXPECT_EQ(labels[0].name, layer == 0 ? "bone" : "vessel");
+    }
+}
+
 TEST(nrrd, headers_that_make_no_sense_are_refused) {
     const ScratchFolder folder;
     const std::string data = "encoding: raw\n\n" + counting(24);

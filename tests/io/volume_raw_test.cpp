@@ -41,6 +41,20 @@ TEST(raw_file, every_type_is_read_plain_packed_and_after_a_header) {
     }
 }
 
+TEST(raw_file, of_a_spacing_that_could_not_be_saved_is_refused) {
+    const ScratchFolder folder;
+    put_bytes(folder / "a.raw", std::string(8, 'x'));
+    for (const double spacing : {1e-10, 1e10}) {
+        ReadOptions options;
+        options.raw = RawLayout{{2, 2, 2}, SampleType::uint8, Vec3(1, spacing, 1)};
+        const std::string message = refusal(folder / "a.raw", options);
+        EXPECT_TRUE(contains(message, "mm is outside 1e-9 to 1e9 mm")) << message;
+        options.spacing = Vec3(1, 1e-9, 1e9);
+        EXPECT_EQ(read_volume(folder / "a.raw", options).volume.geometry().spacing,
+                  *options.spacing);
+    }
+}
+
 TEST(raw_file, big_endian_samples_are_turned_round) {
     const ScratchFolder folder;
     std::mt19937 random(22);

@@ -105,6 +105,25 @@ TEST_P(RoundTrip, keeps_grids_that_are_one_sample_thick) {
     }
 }
 
+TEST_P(RoundTrip, keeps_the_least_and_the_greatest_spacing_and_writes_none_that_is_not_read) {
+    const ScratchFolder folder;
+    std::mt19937 random(10);
+    const auto path = folder / ("volume" + GetParam());
+    Geometry g = random_geometry(random, false, false);
+    g.origin = Vec3::Zero();
+    for (const double spacing : {1e-9, 1e9}) {
+        g.spacing = Vec3::Constant(spacing);
+        write_volume(random_volume<std::uint8_t>(random, g), path);
+        EXPECT_TRUE(read_volume(path).volume.geometry().spacing.isApprox(g.spacing, 1e-6));
+    }
+    for (const double spacing : {1e-10, 1e10}) {
+        g.spacing.x() = spacing;
+        const Volume volume = random_volume<std::uint8_t>(random, g);
+        const std::string message = message_of<OutputError>([&] { write_volume(volume, path); });
+        EXPECT_TRUE(contains(message, "mm is outside 1e-9 to 1e9 mm")) << message;
+    }
+}
+
 TEST_P(RoundTrip, a_second_write_replaces_the_first_and_leaves_only_the_file) {
     const std::string& extension = GetParam();
     const ScratchFolder folder;

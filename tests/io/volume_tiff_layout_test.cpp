@@ -121,6 +121,90 @@ TEST(tiff, planes_of_image_j_may_lie_before_the_directory_of_their_page) {
     for (int z = 0; z < 3; ++z) EXPECT_EQ(file.volume.sample({3, 2, z}), 12 * z + 11);
 }
 
+/// The first samples of the slices of a time step of ScanImage, whose page P has P; and the steps.
+std::pair<std::vector<int>, int> read_scan_image(int pages, const std::string& lines, int step) {
+    const ScratchFolder folder;
+    put_pages(folder, pages, "SI.hChannels.channelSave = 1\n" + lines);
+    ReadOptions options;
+    options.time_step = step;
+    const VolumeFile file = read_volume(folder / "a.tif", options);
+    std::vector<int> found;
+    for (int z = 0; z < file.volume.geometry().size[2]; ++z) found.push_back(page_of(file, z));
+    return {found, file.time_steps};
+}
+
+TEST(tiff, frames_of_scan_image_that_are_no_slices_are_left_out) {
+    const auto lines = [](const std::string& slices, const std::string& more) {
+        return "SI.hStackManager.numSlices = " + slices + "\n" + more;
+    };
+    using Read = std::pair<std::vector<int>, int>;
+    const std::string flyback =
+        "SI.hFastZ.enable = true\nSI.hStackManager.numVolumes = 3\n"
+        "SI.hStackManager.numFramesPerVolume = 3\n"
+        "SI.hStackManager.numFramesPerVolumeWithFlyback = 4\n";
+    EXPECT_EQ(read_scan_image(12, lines("3", flyback), 1), Read({4, 5, 6}, 3));
+    EXPECT_EQ(read_scan_image(9, lines("3", flyback), 1), Read({3, 4, 5}, 3));
+    const std::string two =
+        "SI.hStackManager.framesPerSlice = 2\nSI.hStackManager.numVolumes = 2\n";
+    EXPECT_EQ(read_scan_image(12, lines("3", two), 0), Read({0, 2, 4}, 4));
+    EXPECT_EQ(read_scan_image(12, lines("3", two), 3), Read({7, 9, 11}, 4));
+    EXPECT_EQ(read_scan_image(4, lines("3", two), 1), Read({1, 3}, 2));
+    const std::string mean =
+        "SI.hStackManager.framesPerSlice = 4\nSI.hScan2D.logAverageFactor = 4\n";
+    EXPECT_EQ(read_scan_image(4, lines("4", mean), 0), Read({0, 1, 2, 3}, 1));
+}
+
+TEST(tiff, ome_xml_that_is_cut_off_is_refused_and_that_of_2007_read) {
+    const ScratchFolder folder;
+    const std::string sizes = std::string(lengths) + "SizeZ=\"3\" DimensionOrder=\"XYZCT\"";
+    const std::string whole = ome(sizes, "<TiffData/>");
+    put_pages(folder, 3, whole.substr(0, whole.size() - 12));
+    EXPECT_TRUE(contains(refusal(folder / "a.tif"), "its OME-XML is no XML"))
+        << refusal(folder / "a.tif");
+    put_pages(folder, 3, ome(sizes, "<TiffData IFD=\"0\" NumPlanes=\"3\"/>"));
+    EXPECT_EQ(read_volume(folder / "a.tif").volume.geometry().size[2], 3);
+}
+
+TEST(tiff, pages_in_a_circle_are_noted) {
+    const ScratchFolder folder;
+    std::string bytes = tiff_bytes({counting_page(0), counting_page(4), counting_page(8)});
+    // The last four bytes say where the next page lies: that of the first one.
+    bytes.replace(bytes.size() - 4, 4, bytes.substr(4, 4));
+    put_bytes(folder / "a.tif", bytes);
+    const VolumeFile file = read_volume(folder / "a.tif");
+    EXPECT_EQ(file.volume.geometry().size[2], 3);
+    EXPECT_TRUE(contains(all_notes(file), "lead in a circle")) << all_notes(file);
+}
+
+TEST(tiff, more_pages_than_image_j_tells_of_are_noted) {
+    const ScratchFolder folder;
+    for (const int told : {2, 3, 5}) {
+        put_pages(folder, 5, "ImageJ=1.53t\nimages=" + std::to_string(told) + "\nunit=mm\n");
+        const VolumeFile file = read_volume(folder / "a.tif");
+        EXPECT_EQ(file.volume.geometry().size[2], 5);
+        EXPECT_EQ(contains(all_notes(file), "of its 5 pages: all of them were taken"), told < 5)
+            << all_notes(file);
+    }
+}
+
+TEST(tiff, parts_that_are_not_stored_are_zeros) {
+    const ScratchFolder folder;
+    std::string bytes = tiff_bytes({counting_page(7), counting_page(20)});
+    const auto entry = [](std::uint16_t tag) {
+        return little(tag) + little<std::uint16_t>(4) + little<std::uint32_t>(1);
+    };
+    for (const std::uint16_t tag : {std::uint16_t{273}, std::uint16_t{279}}) {
+        const std::size_t at = bytes.rfind(entry(tag)) + entry(tag).size();
+        bytes.replace(at, 4, little<std::uint32_t>(0));
+    }
+    put_bytes(folder / "a.tif", bytes);
+    const VolumeFile file = read_volume(folder / "a.tif");
+    EXPECT_EQ(file.volume.sample({3, 2, 0}), 18);
+    EXPECT_EQ(file.volume.sample({0, 0, 1}), 0);
+    EXPECT_EQ(file.volume.sample({3, 2, 1}), 0);
+    EXPECT_TRUE(contains(all_notes(file), "are not stored")) << all_notes(file);
+}
+
 TEST(tiff, every_axis_may_have_a_unit_of_its_own_in_image_j) {
     const ScratchFolder folder;
     struct Unit {

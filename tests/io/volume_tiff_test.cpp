@@ -105,10 +105,15 @@ TEST(tiff, the_spacing_that_image_j_writes_is_taken) {
     EXPECT_EQ(spacing(head + "unit=mm\nspacing=1.5\nloop=false\n"), Vec3(0.25, 0.25, 1.5));
     EXPECT_EQ(spacing(head + "unit=cm\r\nspacing=-2\r\n"), Vec3(2.5, 2.5, 20));
     EXPECT_EQ(spacing(head + "unit=mm\n"), Vec3(0.25, 0.25, 1));  // it leaves out a 1
-    for (const char* micron : {"micron", "um", "\xc2\xb5m", "\\u00B5m"}) {
+    for (const char* micron : {"micron", "um", "\xc2\xb5m", "\xb5m", "\\u00B5m", "\\u03bcm"}) {
         EXPECT_TRUE(
             spacing(head + "unit=" + micron + "\nspacing=3\n").isApprox(Vec3(25e-5, 25e-5, 3e-3)))
             << micron;
+    }
+    for (const char* angstrom : {"\xc3\x85", "\xc5", "\\u00c5", "\\u212B"}) {
+        EXPECT_TRUE(
+            spacing(head + "unit=" + angstrom + "\nspacing=4\n").isApprox(Vec3(25e-9, 25e-9, 4e-7)))
+            << angstrom;
     }
     EXPECT_EQ(read(head + "unit=mm\nspacing=1.5\n").notes, std::vector<std::string>{});
     for (const std::string& flat :

@@ -138,6 +138,41 @@ TEST(Hdf5, voxels_of_bigdataviewer_in_pixels_are_not_measured) {
     }
 }
 
+TEST(Hdf5, registrations_of_bigdataviewer_that_stretch_count_where_no_voxel_size_does) {
+    struct Case {
+        const char *size, *affine;
+        Vec3 spacing;
+        const char* note;  ///< empty: none
+    };
+    const Case cases[] = {
+        {"1 1 1", "1 0 0 0 0 1 0 0 0 0 5 0", {1, 1, 5}, "which was taken as their size"},
+        {"1 1 1", "3 0 0 0 0 3 0 0 0 0 3 0", {1, 1, 1}, ""},
+        {"1 2 8", ".5 0 0 0 0 1 0 0 0 0 4 0", {1, 2, 8}, ""},
+        {"1 2 3", "1 0 0 0 0 1 0 0 0 0 5 0", {1, 2, 3}, "does not fit their size of 1 x 2 x 3"},
+        {"1 1 1", "-1 0 0 0 0 1 0 0 0 0 1 0", {1, 1, 1}, "mirror"},
+        {"1 1 1", "1 0 0 9 0 1 0 0 0 0 1 0", {1, 1, 1}, "move"},
+    };
+    const ScratchFolder folder;
+    support::put_bytes(folder / "bdv.h5", bytes_of(hdf5_written() / "bdv.h5"));
+    const std::string xml = bytes_of(hdf5_written() / "bdv.xml");
+    for (const Case& one : cases) {
+        std::string text = xml;
+        text.replace(text.find("<size>1 2 3"), 11, std::string("<size>") + one.size);
+        text.insert(text.find("</SpimData>"),
+                    "<ViewRegistrations><ViewRegistration timepoint=\"0\" setup=\"0\"/>"
+                    "<ViewRegistration timepoint=\"0\" setup=\"1\">"
+                    "<ViewTransform type=\"affine\"><affine>" +
+                        std::string(one.affine) +
+                        "</affine></ViewTransform></ViewRegistration></ViewRegistrations>");
+        support::put_bytes(folder / "bdv.xml", text);
+        const auto store = open_store(folder / "bdv.h5", choice_of(1, 0));
+        const StoreInfo& info = store->info();
+        EXPECT_EQ(info.levels.at(0).geometry.spacing, one.spacing) << one.affine;
+        ASSERT_EQ(info.notes.size(), *one.note ? 1U : 0U) << one.affine;
+        if (*one.note) EXPECT_TRUE(contains(info.notes[0], one.note)) << info.notes[0];
+    }
+}
+
 TEST(Hdf5, a_public_file_of_imaris_reads_as_h5py_reads_it) {
     const fs::path file = real_volume("minimal.ims");
     if (!fs::exists(file)) GTEST_SKIP() << "no sample file";

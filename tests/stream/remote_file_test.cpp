@@ -43,6 +43,17 @@ StoreOptions patient() {
     return options;
 }
 
+TEST(RemoteFile, hdf5_and_tiff_are_read_where_a_server_tells_sizes_to_head_alone) {
+    for (const auto& [folder, name] : {std::pair{"hdf5", "image.ims"}, {"tiff", "pages.tif"}}) {
+        const fs::path& files = written_by(folder);
+        const VolumeServer server({"--folder", files.string(), "--open-sizes"});
+        expect_same_store(*open_store(files / name), *open_store(server.address(name), patient()));
+        const std::string message = message_of<io::InputError>(
+            [&] { (void)open_store(server.address("no_" + std::string(name))); });
+        EXPECT_TRUE(contains(message, "does not exist")) << message;
+    }
+}
+
 TEST(RemoteFile, hdf5_and_tiff_read_as_on_the_disk_although_answers_fail) {
     int files = 0;
     for (const fs::path& folder : {written_by("hdf5"), written_by("tiff")}) {

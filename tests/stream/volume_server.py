@@ -229,7 +229,14 @@ def make_handler(options):
                 first, last = "0", str(int(last) - 1)
             begin = max(0, len(body) - int(last)) if first == "" else int(first)
             end = len(body) if first == "" else min(int(last) + 1, len(body))
-            return 206, body[begin:end], {"Content_Range": f"bytes {begin}-{end - 1}/{len(body)}"}
+            size = "*" if options.open_sizes else len(body)
+            return 206, body[begin:end], {"Content_Range": f"bytes {begin}-{end - 1}/{size}"}
+
+        def do_HEAD(self):
+            body = in_folder(options.folder, urllib.parse.unquote(self.path.lstrip("/")))
+            self.send_response(404 if body is None else 200)
+            self.send_header("Content-Length", str(len(body or b"")))
+            self.end_headers()
 
     return Handler
 
@@ -250,6 +257,7 @@ def main():
     parser.add_argument("--lies", type=float, default=0, help="share of chunks with a wrong byte")
     parser.add_argument("--no-ranges", action="store_true", help="whole files only")
     parser.add_argument("--no-suffixes", action="store_true", help="no ranges from the end")
+    parser.add_argument("--open-sizes", action="store_true", help="sizes for HEAD alone, not with ranges")
     parser.add_argument("--other-range", action="store_true", help="a byte too early, and says so")
     parser.add_argument("--other-suffix", action="store_true", help="the begin for ranges from the end")
     parser.add_argument("--long-tags", action="store_true", help="ETags of 5000 characters")

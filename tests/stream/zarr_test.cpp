@@ -130,12 +130,109 @@ TEST(OmeZarr, channel_time_scale_and_translation_of_each_level_are_those_of_its_
     expect_refusal("no channel 3: it has 3", written() / "ome.zarr", choice_of(3, 0));
 }
 
+TEST(Zarr, the_greatest_number_may_be_the_fill_value_and_an_index_of_shards_big_endian) {
+    const ScratchFolder folder;
+    fs::create_directories(folder / "a.zarr");
+    support::put_bytes(folder / "a.zarr/.zarray",
+                       R"({"zarr_format": 2, "shape": [2, 2, 2], "chunks": [2, 2, 2], )"
+                       R"("dtype": "<u8", "compressor": null, "order": "C", "filters": null, )"
+                       R"("fill_value": 18446744073709551615})");
+    EXPECT_FLOAT_EQ(static_cast<float>(open_store(folder / "a.zarr")->info().fill), 0x1p64F);
+    fs::create_directories(folder / "b.zarr/c/0/0");
+    support::put_bytes(
+        folder / "b.zarr/zarr.json",
+        R"({"zarr_format": 3, "node_type": "array", "shape": [2, 1, 1], "data_type": "uint8", )"
+        R"("chunk_grid": {"name": "regular", "configuration": {"chunk_shape": [2, 1, 1]}}, )"
+        R"("chunk_key_encoding": {"name": "default"}, "fill_value": 0, "codecs": [{"name": )"
+        R"("sharding_indexed", "configuration": {"chunk_shape": [1, 1, 1], "codecs": )"
+        R"([{"name": "bytes"}], "index_codecs": [{"name": "bytes", "configuration": )"
+        R"({"endian": "big"}}]}}]})");
+    std::string shard = "xy";
+    for (const char number : {0, 1, 1, 1}) shard += std::string(7, '\0') + number;
+    support::put_bytes(folder / "b.zarr/c/0/0/0", shard);
+    const auto store = open_store(folder / "b.zarr");
+    EXPECT_EQ(read_box(*store, 0, {{0, 0, 0}, {0, 0, 1}}),
+              (std::vector{std::byte{'x'}, std::byte{'y'}}));
+}
+
+TEST(OmeZarr, the_first_series_is_that_of_the_list) {
+    const ScratchFolder folder;
+    const auto put = [&](const std::string& name, const std::string& text) {
+        fs::create_directories((folder / name).parent_path());
+        support::put_bytes(folder / name, text);
+    };
+    const std::string group = R"({"zarr_format": 2})";
+    put("a.zarr/.zgroup", group);
+    put("a.zarr/.zattrs", R"({"bioformats2raw.layout": 3})");
+    put("a.zarr/OME/.zgroup", group);
+    double scale = 0;
+    for (const std::string name : {"0", "1", "left"}) {
+        const std::string image = "a.zarr/" + name;
+        put(image + "/.zgroup", group);
+        put(image + "/.zattrs",
+            R"({"multiscales": [{"version": "0.4", "axes": [{"name": "z", "type": "space"}, )"
+            R"({"name": "y", "type": "space"}, {"name": "x", "type": "space"}], "datasets": )"
+            R"([{"path": "0", "coordinateTransformations": [{"type": "scale", "scale": [1, 1, )" +
+                std::to_string(++scale) + "]}]}]}]}");
+        put(image + "/0/.zarray",
+            R"({"zarr_format": 2, "shape": [2, 2, 2], "chunks": [2, 2, 2], "dtype": "|u1", )"
+            R"("compressor": null, "fill_value": 0, "order": "C", "filters": null})");
+    }
+    const auto spacing_with = [&](const std::string& series) {
+        put("a.zarr/OME/.zattrs", series);
+        return open_store(folder / "a.zarr")->info().levels.at(0).geometry.spacing.x();
+    };
+    EXPECT_EQ(spacing_with(R"({"series": ["0", "1"]})"), 1);
+    EXPECT_EQ(spacing_with(R"({"series": ["1", "0"]})"), 2);
+    EXPECT_EQ(spacing_with(R"({"series": ["left", "0"]})"), 3);
+    EXPECT_EQ(spacing_with(R"({"series": ["../a.zarr/left"]})"), 1);
+    EXPECT_EQ(spacing_with("{}"), 1);
+}
+
+TEST(OmeZarr, an_axis_without_a_unit_has_that_of_the_others) {
+    const ScratchFolder folder;
+    const std::string space = R"("type": "space")", um = R"(, "unit": "micrometer")";
+    const auto zattrs = [&](const std::string& z, const std::string& y) {
+        return R"({"multiscales": [{"version": "0.4", "axes": [{"name": "z", )" + space + z +
+               R"(}, {"name": "y", )" + space + y + R"(}, {"name": "x", )" + space + y +
+               R"(}], "datasets": [{"path": "0", "coordinateTransformations": [)"
+               R"({"type": "scale", "scale": [1.0, 0.25, 0.25]}]}]}]})";
+    };
+    fs::create_directories(folder / "a.zarr/0");
+    support::put_bytes(folder / "a.zarr/.zgroup", R"({"zarr_format": 2})");
+    support::put_bytes(folder / "a.zarr/0/.zarray",
+                       R"({"zarr_format": 2, "shape": [2, 2, 2], "chunks": [2, 2, 2], )"
+                       R"("dtype": "|u1", "compressor": null, "fill_value": 0, "order": "C", )"
+                       R"("filters": null})");
+    for (const std::string& z : {std::string(), std::string(R"(, "unit": "pixel")")}) {
+        support::put_bytes(folder / "a.zarr/.zattrs", zattrs(z, um));
+        const auto store = open_store(folder / "a.zarr");
+        const Geometry& grid = store->info().levels.at(0).geometry;
+        EXPECT_TRUE(grid.spacing.isApprox(Vec3(0.25e-3, 0.25e-3, 1e-3))) << grid.spacing;
+        EXPECT_FALSE(grid.measured);
+        ASSERT_EQ(store->info().notes.size(), 1U);
+        EXPECT_TRUE(contains(store->info().notes[0], "its axis z has no unit of length"));
+    }
+    const std::string units = R"(, "units": "micrometer")";
+    support::put_bytes(folder / "a.zarr/.zattrs", zattrs(units, units));
+    EXPECT_TRUE(open_store(folder / "a.zarr")
+                    ->info()
+                    .levels.at(0)
+                    .geometry.spacing.isApprox(Vec3(0.25e-3, 0.25e-3, 1e-3)));
+    support::put_bytes(folder / "a.zarr/.zattrs", zattrs("", ""));
+    const auto store = open_store(folder / "a.zarr");
+    EXPECT_EQ(store->info().levels.at(0).geometry.spacing, Vec3(0.25, 0.25, 1));
+    EXPECT_TRUE(contains(store->info().notes.at(0), "mm were taken"));
+}
+
 TEST(OmeZarr, a_spacing_that_is_given_is_that_of_the_finest_level) {
     StoreOptions options;
     options.spacing = Vec3(1, 2, 3);
     const auto store = open_store(written() / "ome.zarr", options);
     EXPECT_TRUE(store->info().levels[0].geometry.spacing.isApprox(Vec3(1, 2, 3)));
     EXPECT_TRUE(store->info().levels[1].geometry.spacing.isApprox(Vec3(2, 4, 6)));
+    options.spacing = Vec3(1, 2, 1e-10);
+    expect_refusal("1e-10 mm is outside 1e-9 to 1e9 mm", written() / "ome.zarr", options);
 }
 
 /// The first array of a Zarr 2 image by python3-zarr, and of its twin of version 3 by us.

@@ -11,7 +11,7 @@
 namespace palpate::io {
 
 /// The side of the body to which each index axis runs: "LPS" for a grid along those axes. For an
-/// oblique axis it is the nearest side.
+/// oblique axis it is the nearest of the sides that no axis before it names.
 std::string orientation_of(const Geometry& geometry);
 
 /// The inverse, as nibabel, ITK-SNAP and 3D Slicer write it: "RAS" means that the first axis runs

@@ -23,7 +23,8 @@ class GrowingImage {
   public:
     /// Touches no file. Uses the options of the format only. `temporary`: how names of files
     /// end while they are written. Processes that may write the same chunk at the same time (one of
-    /// them taken for dead) need different ones. Throws std::invalid_argument for options.
+    /// them taken for dead) need different ones. Throws std::invalid_argument for options,
+    /// and for grids that no reader would take.
     GrowingImage(std::filesystem::path folder, SampleType type, const Geometry& finest,
                  const ConvertOptions& options, std::string temporary = ".part");
     /// The same with given levels, the finest first.
