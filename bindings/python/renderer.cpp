@@ -42,6 +42,7 @@ void change(SharedRenderer& renderer, const Change& how) {
     how(settings);
     check(settings);
     renderer.settings = std::move(settings);
+    renderer.force.changed = true;  // the force rises with the ramp, as after a command
 }
 
 Tick tick(SharedRenderer& renderer, double time, const Vec3& position,
@@ -188,6 +189,7 @@ void bind_changes(py::class_<SharedRenderer>& renderer) {
                 const double isovalue = io::level_in(r.field.volume(), level);
                 check_isovalue(isovalue, r.field.solid());
                 use_isovalue(r.changeable(), isovalue);
+                r.force.changed = true;
             },
             "Level felt [data units]; may be changed between ticks.")
         .def_property(
@@ -206,13 +208,17 @@ void bind_changes(py::class_<SharedRenderer>& renderer) {
             "transform", [](const R& r) { return r.settings.transform; },
             [](R& r, const DeviceTransform& transform) {
                 change(r, [&](RendererSettings& s) { s.transform = transform; });
+                r.force.waiting = true;
             },
             "DeviceTransform")
         .def_property_readonly(
             "limits", [](const R& r) { return r.settings.device; }, "DeviceLimits")
         .def_property(
             "forces_on", [](const R& r) { return r.settings.forces_on; },
-            [](R& r, bool on) { r.changeable().settings.forces_on = on; });
+            [](R& r, bool on) {
+                r.changeable().settings.forces_on = on;
+                r.force.changed = true;
+            });
 }
 
 }  // namespace

@@ -65,6 +65,21 @@ def test_commands_and_edits_are_values(make):
     assert "object at" not in repr(one)
 
 
+@pytest.mark.parametrize("change", [
+    lambda r: setattr(r, "isovalue", -4.0), lambda r: setattr(r.force, "stiffness", 4.0),
+    lambda r: setattr(r, "transform", palpate.DeviceTransform(translation=(0, 0, -3))),
+    lambda r: setattr(r, "transform", palpate.DeviceTransform(scale=0.9))])
+def test_a_change_of_a_renderer_raises_the_force_on_a_standing_hand_with_the_ramp(change):
+    field = palpate.Field(palpate.Volume((20 - numpy.indices((40, 40, 40))[0]).astype("f4")))
+    renderer, force = palpate.Renderer(field, 0.0), []
+    for i in range(1400):
+        if i == 1000:
+            change(renderer)
+        force.append(numpy.linalg.norm(renderer.render(i * 0.001, (20, 20, 22 - min(i, 250) * 0.01)).force))
+    assert max(numpy.diff(force[990:])) <= 3.3 / 250 + 1e-9
+    assert force[-1] > force[999] + 1
+
+
 def test_values_that_differ_are_not_equal():
     assert palpate.command.Freeze(True) != palpate.command.Freeze(False) != palpate.command.Clutch(False)
     assert palpate.Fill((0, 0, 0), (1, 2, 3), 4.0) != palpate.Fill((0, 0, 0), (1, 2, 4), 4.0)
