@@ -15,8 +15,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "apps/viewer/panel/colours.hpp"
-
 namespace palpate::viewer {
 namespace {
 
@@ -181,49 +179,38 @@ void let_return_press_buttons(QWidget& parent) {
         button->installEventFilter(presses);
 }
 
-Note::Note(const QString& name, Kind kind) : kind_(kind) {
+Note::Note(QWidget* owner, const QString& name, Kind kind) : QLabel(owner), kind_(kind) {
     setObjectName(name);
     setTextFormat(Qt::PlainText);
     setWordWrap(true);
-    setTextInteractionFlags(Qt::TextSelectableByMouse);
+    setFixedSize(0, 0);
     hide();
-    paint_text();
 }
 
 void Note::say(const QString& text) {
     if (text == this->text()) return;
     setText(text);
     setVisible(!text.isEmpty());
-}
-
-void Note::paint_text() {
-    if (kind_ == Kind::plain) return;
-    const QColor colour = is_dark(palette()) ? QColor(255, 160, 130) : QColor(170, 40, 0);
-    if (palette().color(QPalette::WindowText) == colour) return;
-    QPalette changed = palette();
-    changed.setColor(QPalette::WindowText, colour);
-    setPalette(changed);
-}
-
-void Note::changeEvent(QEvent* event) {
-    if (event->type() == QEvent::PaletteChange) paint_text();
-    QLabel::changeEvent(event);
+    for (QWidget* around = parentWidget(); around; around = around->parentWidget()) {
+        if (auto* section = qobject_cast<Section*>(around)) section->show_notes();
+    }
 }
 
 Section::Section(const QString& title, const QString& name, QWidget* content)
-    : heading_(named(new QToolButton, name + "_heading", tr("Fold this part away or back"))),
+    : title_(title),
+      heading_(named(new QToolButton, name + "_heading")),
       content_(content),
-      message_(new Note(name + "_message", Note::Kind::warning)) {
+      message_(new Note(this, name + "_message", Note::Kind::warning)) {
     setObjectName(name);
-    heading_->setText(title);
     heading_->setCheckable(true);
     heading_->setAutoRaise(true);
     heading_->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
     heading_->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
     heading_->setFocusPolicy(Qt::TabFocus);
     make_bold(*heading_);
-    column_in(this, {heading_, message_, content_})->setSpacing(2);
+    column_in(this, {heading_, content_})->setSpacing(2);
     connect(heading_, &QToolButton::toggled, this, &Section::set_open);
+    show_notes();
     set_open(true);
 }
 
@@ -231,6 +218,17 @@ void Section::set_open(bool open) {
     heading_->setChecked(open);
     heading_->setArrowType(open ? Qt::DownArrow : Qt::RightArrow);
     content_->setVisible(open);
+}
+
+void Section::show_notes() {
+    QStringList lines;
+    for (const Note* note : findChildren<Note*>()) {
+        if (!note->text().isEmpty()) lines << note->text();
+    }
+    heading_->setText(lines.isEmpty() ? title_ : title_ + QString::fromUtf8("  ⓘ"));
+    lines << tr("Fold this part away or back");
+    heading_->setToolTip("<p>" + lines.join('\n').toHtmlEscaped().replace("\n", "</p><p>") +
+                         "</p>");
 }
 
 void Section::say(const QString& why) {

@@ -60,19 +60,19 @@ void make_bold(QWidget& widget, bool bold = true);
 /// the forces.
 void let_return_press_buttons(QWidget& parent);
 
-/// A line or more of text that wraps, and is not there while it is empty.
+/// A text about its owner that holds for now. It takes no room, so that nothing jumps when it
+/// comes: the window shows it over the picture (Hints), and the tip of its section's heading has
+/// it, too.
 class Note : public QLabel {
+    Q_OBJECT
+
   public:
     enum class Kind { plain, warning };
-    Note(const QString& name, Kind kind);
+    Note(QWidget* owner, const QString& name, Kind kind);
     void say(const QString& text);
-
-  protected:
-    void changeEvent(QEvent* event) override;
+    Kind kind() const { return kind_; }
 
   private:
-    void paint_text();
-
     Kind kind_;
 };
 
@@ -88,8 +88,11 @@ class Section : public QWidget {
     bool is_open() const { return heading_->isChecked(); }
     /// Why something was refused; empty: all is well. Opens the section.
     void say(const QString& why);
+    /// Marks the heading while there are notes, and puts them into its tip.
+    void show_notes();
 
   private:
+    const QString title_;
     QToolButton* heading_;
     QWidget* content_;
     Note* message_;

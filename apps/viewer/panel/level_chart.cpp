@@ -140,7 +140,7 @@ QSize LevelChart::sizeHint() const {
 }
 
 QSize LevelChart::minimumSizeHint() const {
-    return {static_cast<int>(8 * text_height()), static_cast<int>(8 * text_height())};
+    return {static_cast<int>(8 * text_height()), static_cast<int>(5 * text_height())};
 }
 
 void LevelChart::ask_level(double level) {

@@ -427,6 +427,233 @@ Der Schieber endet, wo Gerät und Regelkreis sie nicht mehr stabil wiedergeben k
     </message>
 </context>
 <context>
+    <name>Sentences</name>
+    <message>
+        <source>%1 = %2: must be %3</source>
+        <translation>%1 = %2: erlaubt ist %3</translation>
+    </message>
+    <message>
+        <source>the isovalue lies outside the data&apos;s range: nothing is solid, so there is nothing to touch</source>
+        <translation>Der Isowert liegt außerhalb des Wertebereichs der Daten: Nichts ist fest, also gibt es nichts zu fühlen</translation>
+    </message>
+    <message>
+        <source>the background outside the data is solid at this isovalue: all of space outside the data will be solid (choose another isovalue or background)</source>
+        <translation>Der Hintergrund außerhalb der Daten ist bei diesem Isowert fest: Der ganze Raum außerhalb der Daten wird fest (anderen Isowert oder Hintergrund wählen)</translation>
+    </message>
+    <message>
+        <source>%1: the data is constant, so there is no surface to touch</source>
+        <translation>%1: Alle Werte sind gleich, also gibt es keine Fläche zu fühlen</translation>
+    </message>
+    <message>
+        <source>%1 does not give its orientation, and %2 does: left and right of one of them may be mirrored (palpate convert %3 OUT --orientation RAS writes it with one)</source>
+        <translation>%1 nennt seine Orientierung nicht, %2 nennt sie: Links und rechts können bei einem von beiden vertauscht sein (palpate convert %3 OUT --orientation RAS schreibt es mit Orientierung)</translation>
+    </message>
+    <message>
+        <source>%1 does not give its spacing, and %2 does: they may differ in size (palpate convert %3 OUT --spacing X,Y,Z writes it with one)</source>
+        <translation>%1 nennt seinen Abstand der Werte nicht, %2 nennt ihn: Sie können verschieden groß sein (palpate convert %3 OUT --spacing X,Y,Z schreibt es mit Abstand)</translation>
+    </message>
+    <message>
+        <source>the layers are in %1; %2 does not say what its densities are in</source>
+        <translation>Die Schichten sind in %1; %2 nennt die Einheit seiner Dichten nicht</translation>
+    </message>
+    <message>
+        <source>the layers are in %1; %2 is in %3</source>
+        <translation>Die Schichten sind in %1; %2 ist in %3</translation>
+    </message>
+    <message>
+        <source>these layers lie outside the densities of %1: %2</source>
+        <translation>Diese Schichten liegen außerhalb der Dichten von %1: %2</translation>
+    </message>
+    <message>
+        <source>there is not enough memory for the surface</source>
+        <translation>Für die Oberfläche reicht der Speicher nicht</translation>
+    </message>
+    <message>
+        <source>the isovalue is not finite</source>
+        <translation>Der Isowert ist nicht endlich</translation>
+    </message>
+    <message>
+        <source>the isovalue is not a number, or infinite so that all of space is solid</source>
+        <translation>Der Isowert ist keine Zahl oder so unendlich, dass der ganze Raum fest ist</translation>
+    </message>
+    <message>
+        <source>the penetration threshold must be at least 0 mm, not %1</source>
+        <translation>Die Schwelle zum Durchdrücken muss mindestens 0 mm sein, nicht %1</translation>
+    </message>
+    <message>
+        <source>a range of interest needs low &lt;= high, not %1 to %2</source>
+        <translation>Ein Bereich braucht unten &lt;= oben, nicht %1 bis %2</translation>
+    </message>
+    <message>
+        <source>friction: needs 0 &lt;= dynamic coefficient &lt;= static coefficient</source>
+        <translation>Reibung: nötig ist 0 &lt;= Gleitreibung &lt;= Haftreibung</translation>
+    </message>
+    <message>
+        <source>tools need the cubic field: a linear one can be touched only with a point</source>
+        <translation>Werkzeuge brauchen das kubische Feld: Ein lineares lässt sich nur mit einem Punkt fühlen</translation>
+    </message>
+    <message>
+        <source>a tool cannot be combined with %1: use only one of the two</source>
+        <translation>Ein Werkzeug geht nicht zusammen mit: %1. Nur eines von beiden verwenden</translation>
+    </message>
+    <message>
+        <source>layers</source>
+        <translation>Schichten</translation>
+    </message>
+    <message>
+        <source>penetrability</source>
+        <translation>Durchdrücken</translation>
+    </message>
+    <message>
+        <source>a magnet</source>
+        <translation>Magnet</translation>
+    </message>
+    <message>
+        <source>a texture</source>
+        <translation>Textur</translation>
+    </message>
+    <message>
+        <source>layer &quot;%1&quot; is there twice</source>
+        <translation>Die Schicht „%1“ gibt es zweimal</translation>
+    </message>
+    <message>
+        <source>layer &quot;%1&quot;: its level must be finite</source>
+        <translation>Schicht „%1“: Ihr Wert muss endlich sein</translation>
+    </message>
+    <message>
+        <source>layer &quot;%1&quot;: levels must rise from layer to layer, from outside in</source>
+        <translation>Schicht „%1“: Die Werte müssen von außen nach innen von Schicht zu Schicht steigen</translation>
+    </message>
+    <message>
+        <source>layer &quot;%1&quot;: levels must fall from layer to layer, from outside in</source>
+        <translation>Schicht „%1“: Die Werte müssen von außen nach innen von Schicht zu Schicht fallen</translation>
+    </message>
+    <message>
+        <source>layer %1 has no name</source>
+        <translation>Schicht %1 hat keinen Namen</translation>
+    </message>
+    <message>
+        <source>real-time priority: SCHED_FIFO %1</source>
+        <translation>Echtzeitpriorität: SCHED_FIFO %1</translation>
+    </message>
+    <message>
+        <source>real-time priority: not granted (%1); allow it with a line &apos;@audio - rtprio 90&apos; in /etc/security/limits.d and your user in that group</source>
+        <translation>Echtzeitpriorität: nicht gewährt (%1); zu erlauben mit einer Zeile &apos;@audio - rtprio 90&apos; in /etc/security/limits.d und dem Benutzer in dieser Gruppe</translation>
+    </message>
+    <message>
+        <source>memory: locked</source>
+        <translation>Speicher: gesperrt</translation>
+    </message>
+    <message>
+        <source>a number</source>
+        <translation>eine Zahl</translation>
+    </message>
+    <message>
+        <source>finite</source>
+        <translation>endlich</translation>
+    </message>
+    <message>
+        <source>from %1 to %2</source>
+        <translation>%1 bis %2</translation>
+    </message>
+    <message>
+        <source>finite and at least %1</source>
+        <translation>endlich und mindestens %1</translation>
+    </message>
+    <message>
+        <source>finite and above 0</source>
+        <translation>endlich und über 0</translation>
+    </message>
+    <message>
+        <source>above 0 (inf: none)</source>
+        <translation>über 0 (inf: keine)</translation>
+    </message>
+    <message>
+        <source>at least 0 (inf: none)</source>
+        <translation>mindestens 0 (inf: keine)</translation>
+    </message>
+    <message>
+        <source>at least 0 (inf: start at any)</source>
+        <translation>mindestens 0 (inf: Beginn bei jeder Kraft)</translation>
+    </message>
+    <message>
+        <source>at most %1 at %2 Hz and a delay of %3 ms to be rendered stably</source>
+        <translation>höchstens %1 bei %2 Hz und %3 ms Verzögerung, um stabil zu sein</translation>
+    </message>
+    <message>
+        <source>at most %1 at %2 Hz to be rendered stably</source>
+        <translation>höchstens %1 bei %2 Hz, um stabil zu sein</translation>
+    </message>
+    <message>
+        <source>at most %1 over this distance</source>
+        <translation>höchstens %1 bei dieser Reichweite</translation>
+    </message>
+    <message>
+        <source>below the physical damping of device and hand, %1</source>
+        <translation>weniger als die physische Dämpfung von Gerät und Hand, %1</translation>
+    </message>
+    <message>
+        <source>below the physical rotational damping of device and hand, %1</source>
+        <translation>weniger als die physische Drehdämpfung von Gerät und Hand, %1</translation>
+    </message>
+    <message>
+        <source>stiffness [N/mm]</source>
+        <translation>Steifigkeit [N/mm]</translation>
+    </message>
+    <message>
+        <source>damping [N s/mm]</source>
+        <translation>Dämpfung [N s/mm]</translation>
+    </message>
+    <message>
+        <source>damping + viscosity [N s/mm]</source>
+        <translation>Dämpfung + Viskosität [N s/mm]</translation>
+    </message>
+    <message>
+        <source>viscosity [N s/mm]</source>
+        <translation>Viskosität [N s/mm]</translation>
+    </message>
+    <message>
+        <source>force limit [N]</source>
+        <translation>Kraftgrenze [N]</translation>
+    </message>
+    <message>
+        <source>force rate limit [N/s]</source>
+        <translation>Grenze der Kraftänderung [N/s]</translation>
+    </message>
+    <message>
+        <source>force ramp [s]</source>
+        <translation>Kraftrampe [s]</translation>
+    </message>
+    <message>
+        <source>force to start below [N]</source>
+        <translation>Beginn unterhalb von [N]</translation>
+    </message>
+    <message>
+        <source>stale time [s]</source>
+        <translation>Zeit bis veraltet [s]</translation>
+    </message>
+    <message>
+        <source>magnet peak [N]</source>
+        <translation>Magnetkraft [N]</translation>
+    </message>
+    <message>
+        <source>rotational stiffness [N mm/rad]</source>
+        <translation>Drehsteifigkeit [N mm/rad]</translation>
+    </message>
+    <message>
+        <source>rotational damping [N mm s/rad]</source>
+        <translation>Drehdämpfung [N mm s/rad]</translation>
+    </message>
+    <message>
+        <source>torque limit [N mm]</source>
+        <translation>Drehmomentgrenze [N mm]</translation>
+    </message>
+    <message>
+        <source>torque rate limit [N mm/s]</source>
+        <translation>Grenze der Drehmomentänderung [N mm/s]</translation>
+    </message>
+</context>
+<context>
     <name>Streaming</name>
     <message>
         <source>single samples</source>
@@ -635,8 +862,8 @@ Der Schieber endet, wo Gerät und Regelkreis sie nicht mehr stabil wiedergeben k
         <translation>Art des Pinsels</translation>
     </message>
     <message>
-        <source>the brush&apos;s radius must be from %1 mm (a voxel) to %2 mm (a quarter of the grid), not %3 mm</source>
-        <translation>der Radius des Pinsels muss von %1 mm (einem Voxel) bis %2 mm (einem Viertel des Gitters) sein, nicht %3 mm</translation>
+        <source>the brush&apos;s radius must be from %1 %4 (a voxel) to %2 %4 (a quarter of the grid), not %3 %4</source>
+        <translation>der Radius des Pinsels muss von %1 %4 (einem Voxel) bis %2 %4 (einem Viertel des Gitters) sein, nicht %3 %4</translation>
     </message>
     <message>
         <source>the brush&apos;s hardness must be from %1 to %2, not %3</source>
@@ -683,8 +910,8 @@ Der Schieber endet, wo Gerät und Regelkreis sie nicht mehr stabil wiedergeben k
         <translation>Form des Werkzeugs</translation>
     </message>
     <message>
-        <source>Where half of the effect is left [mm in the volume]: from a voxel to a quarter of the grid. With the shape of the tool: how far from its skin; with less than a voxel, sharp corners stay where they are</source>
-        <translation>Wo noch die halbe Wirkung ist [mm im Volumen]: von einem Voxel bis zu einem Viertel des Gitters. Mit der Form des Werkzeugs: wie weit von seiner Haut; bei weniger als einem Voxel bleiben scharfe Ecken stehen</translation>
+        <source>Where half of the effect is left, in the volume: from a voxel to a quarter of the grid. With the shape of the tool: how far from its skin; with less than a voxel, sharp corners stay where they are</source>
+        <translation>Wo noch die halbe Wirkung ist, im Volumen: von einem Voxel bis zu einem Viertel des Gitters. Mit der Form des Werkzeugs: wie weit von seiner Haut; bei weniger als einem Voxel bleiben scharfe Ecken stehen</translation>
     </message>
     <message>
         <source>The brush works with what the tool is, also while it turns</source>
@@ -2438,6 +2665,13 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
     </message>
 </context>
 <context>
+    <name>palpate::viewer::NumberBox</name>
+    <message>
+        <source>%1 can be read in two ways: type %2 or %3</source>
+        <translation>%1 ist zweideutig: %2 oder %3 eingeben</translation>
+    </message>
+</context>
+<context>
     <name>palpate::viewer::OverlayControls</name>
     <message>
         <source>Open…</source>
@@ -3489,16 +3723,8 @@ Ein Zug endet zwei Sekunden, nachdem die Hand alle Schichten verlassen hat.</tra
         <translation>Volumen öffnen …</translation>
     </message>
     <message>
-        <source>NRRD, MetaImage, NIfTI, DICOM, TIFF, VTI, raw; a session or a recording</source>
-        <translation>NRRD, MetaImage, NIfTI, DICOM, TIFF, VTI, Rohdaten; eine Sitzung oder Aufzeichnung</translation>
-    </message>
-    <message>
         <source>Open a folder…</source>
         <translation>Ordner öffnen …</translation>
-    </message>
-    <message>
-        <source>DICOM series, TIFF slices</source>
-        <translation>DICOM-Serien, TIFF-Schichtbilder</translation>
     </message>
     <message>
         <source>Feel the sample head</source>
@@ -3523,6 +3749,14 @@ Drag the line in the histogram to feel another level. The page Feel lets you pre
         <translation>Klicken Sie auf eine Oberfläche, um sie zu berühren; ziehen Sie, um entlangzufahren, halten Sie die Taste oder drehen Sie das Rad, um zu drücken.
 Die rechte Taste dreht die Ansicht.
 Ziehen Sie die Linie im Histogramm, um einen anderen Wert zu fühlen. Auf der Seite Fühlen lässt sich durch Oberflächen drücken.</translation>
+    </message>
+    <message>
+        <source>NRRD, MetaImage, NIfTI, DICOM, TIFF, HDF5, VTI, raw; a session or a recording</source>
+        <translation>NRRD, MetaImage, NIfTI, DICOM, TIFF, HDF5, VTI, Rohdaten; eine Sitzung oder Aufzeichnung</translation>
+    </message>
+    <message>
+        <source>DICOM series, TIFF slices, Zarr and N5 stores. Ctrl+L opens an address</source>
+        <translation>DICOM-Serien, TIFF-Schichten, Zarr- und N5-Speicher. Strg+L öffnet eine Adresse</translation>
     </message>
 </context>
 </TS>

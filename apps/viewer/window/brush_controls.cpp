@@ -14,9 +14,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "apps/viewer/window/content.hpp"
 #include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/panel/sentences.hpp"
+#include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/messages.hpp"
 #include "apps/viewer/window/views.hpp"
 #include "palpate/names.hpp"
@@ -58,7 +58,7 @@ BrushControls::BrushControls(const Desk& desk)
     : EffectForm(desk.effect()),
       Desk(desk),
       body_(new QWidget),
-      reason_(new Note("brush_reason", Note::Kind::plain)),
+      reason_(new Note(this, "brush_reason", Note::Kind::plain)),
       on_(button({"brush", "", tr("While it is on, the probe edits the samples where it is")},
                  [this] { change([](BrushChoice& c) { c.on = !c.on; }); })),
       state_(named(new QLabel, "edit_state")) {
@@ -74,7 +74,7 @@ BrushControls::BrushControls(const Desk& desk)
     column->addLayout(make_form());
     column->addWidget(make_history());
     column->addWidget(state_);
-    column_in(this, {reason_, body_});
+    column_in(this, {body_});
     connect(&effect_, &Effect::changed, this,
             [this] { set_tool(effect_.settings().tool != nullptr); });
     connect(&content_, &Content::run_changed, this, [this] {

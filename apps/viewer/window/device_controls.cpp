@@ -149,13 +149,13 @@ DeviceControls::DeviceControls(const Desk& desk)
       picker_(named(new QComboBox, "devices",
                     tr("Devices; grey: not found, the tip says what was looked for"))),
       options_(named(new QLineEdit, "device_options")),
-      missing_(new Note("device_missing", Note::Kind::plain)),
+      missing_(new Note(this, "device_missing", Note::Kind::plain)),
       dot_(named(new QLabel, "device_dot")),
       state_(named(new QLabel, "device_state")),
       model_(named(new QLabel, "device_model")),
       workspace_(named(new QLabel, "device_workspace",
                        tr("The box that the device reaches [mm of the hand], and its most force"))),
-      problem_(new Note("device_problem", Note::Kind::warning)) {
+      problem_(new Note(this, "device_problem", Note::Kind::warning)) {
     search_.setParent(nullptr);  // nobody waits for it
     options_->setAccessibleName(tr("Options of the device"));
     picker_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
@@ -226,8 +226,7 @@ void DeviceControls::make_controls() {
                     &run::Buttons::deadman);
     form->addRow(tr("Clutch button"), clutch_);
     form->addRow(tr("Dead-man button"), deadman_);
-    column_in(this, {row_of({picker_, look}, 0), row_of({options_, use}, 0), row_of({add, remove}),
-                     missing_, problem_})
+    column_in(this, {row_of({picker_, look}, 0), row_of({options_, use}, 0), row_of({add, remove})})
         ->addLayout(form);
 }
 

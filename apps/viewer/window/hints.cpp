@@ -3,6 +3,7 @@
 
 #include <QCoreApplication>
 #include <QStringList>
+#include <QUrl>
 
 #include <algorithm>
 
@@ -131,6 +132,9 @@ Hints::Hints(const Desk& desk, const RecordingController& recordings)
     : Controller(desk),
       recordings_(recordings),
       scene_(views_.scene()),
+      notes_(label_over(scene_, "notes",
+                        "background-color: rgba(255, 255, 225, 235); color: black; "
+                        "border: 1px solid #b0a060;")),
       reason_(label_over(scene_, "hint", "background-color: #ffb000; color: black;")),
       brush_(label_over(scene_, "brush_on", "background-color: #d55e00; color: white;")),
       depth_(label_over(scene_, "depth", "background-color: rgba(0, 0, 0, 150); color: white;")),
@@ -143,7 +147,33 @@ Hints::Hints(const Desk& desk, const RecordingController& recordings)
                                     "rgba(255, 255, 255, 190); border: 2px solid " +
                                         colour + ";");
     }
+    notes_->setAttribute(Qt::WA_TransparentForMouseEvents, false);
+    notes_->setCursor(Qt::ArrowCursor);
+    notes_->setTextInteractionFlags(Qt::TextBrowserInteraction);
+    connect(notes_, &QLabel::linkActivated, this, [this](const QString& text) {
+        closed_notes_ << QUrl::fromPercentEncoding(text.toLatin1());
+        notes_->hide();
+    });
     connect(&recordings, &RecordingController::changed, this, [this] { recorded_.start(); });
+}
+
+void Hints::show_notes(const QList<const Note*>& notes) {
+    QStringList shown, closed;  // one that comes again is said again
+    for (const Note* note : notes) {
+        const QString text = note->text();
+        if (closed_notes_.contains(text)) {
+            closed << text;
+            continue;
+        }
+        const char* const colour = note->kind() == Note::Kind::warning ? "#aa2800" : "#000000";
+        shown << QString(
+                     "<span style='color: %1'>%2</span>&nbsp; <a href='%3' style='color: "
+                     "black; text-decoration: none'><b>×</b></a>")
+                     .arg(colour, text.toHtmlEscaped(), QUrl::toPercentEncoding(text));
+    }
+    closed_notes_ = closed;
+    QWidget& pane = views_.main_pane();
+    say(*notes_, shown.join("<br>"), pane, {pane.width() / 2, 0});
 }
 
 /// Why there is no force although the hand may expect one; empty: nothing holds it back. Data that
@@ -176,8 +206,9 @@ void Hints::observe(const HandSnapshots& hands, bool brush) {
                            : live                ? reason_of(*now)
                            : content_.playback() ? tr("A recording is played: Esc leaves it")
                                                  : QString();
-    // Below the clock.
-    say(*reason_, reason, pane, {pane.width() / 2, 2 * line});
+    // Below the notes and the clock.
+    const int top = notes_->isHidden() ? 0 : notes_->height();
+    say(*reason_, reason, pane, {pane.width() / 2, top + 2 * line});
     say(*brush_,
         live && brush ? tr("The brush is on: it changes what it touches (B: off)") : QString(),
         pane, {pane.width() / 2, pane.height() - line});
@@ -188,7 +219,7 @@ void Hints::observe(const HandSnapshots& hands, bool brush) {
     const QString clock = QString("<span style='color: #ff4040'>●</span> %1:%2")
                               .arg(seconds / 60)
                               .arg(seconds % 60, 2, 10, QChar('0'));
-    say(*recording_, clock, pane, {pane.width() - 3 * line, line});
+    say(*recording_, clock, pane, {pane.width() - 3 * line, top + line});
 }
 
 /// The problem of a device, with its hand if there are several. Empty if there is none.

@@ -23,6 +23,7 @@ QString streaming_tip(const stream::BrickLoaderStatus& hand, const DetailControl
 /// Why the hand waits, for where the eye is.
 QString waiting_words(const stream::BrickLoaderStatus& hand);
 
+class Note;
 class RecordingController;
 class Scene;
 
@@ -35,6 +36,8 @@ class Hints : public Controller {
     /// Often: shows what holds now. Without the chosen hand no run is felt or played. `brush`: it
     /// is on.
     void observe(const HandSnapshots& hands, bool brush);
+    /// Over the picture, until they are closed there or hold no more.
+    void show_notes(const QList<const Note*>& notes);
 
   private:
     QString reason_of(const Snapshot& now);
@@ -44,7 +47,8 @@ class Hints : public Controller {
 
     const RecordingController& recordings_;
     Scene& scene_;
-    QLabel *reason_, *brush_, *depth_, *recording_;
+    QLabel *notes_, *reason_, *brush_, *depth_, *recording_;
+    QStringList closed_notes_;
     PerHand<QLabel*> numbers_;
     QElapsedTimer recorded_;
     QElapsedTimer waiting_;  // for data; invalid: the hand does not

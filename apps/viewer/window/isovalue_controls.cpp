@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "apps/viewer/panel/sentences.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/messages.hpp"
 #include "palpate/renderer.hpp"
@@ -28,7 +29,7 @@ IsovalueControls::IsovalueControls(const Desk& desk)
       felt_(named(new QLabel, "felt",
                   tr("The level felt now [data units]; another than the isovalue while "
                      "penetrability lets the hand through"))),
-      terraces_(new Note("terraces", Note::Kind::plain)) {
+      terraces_(new Note(this, "terraces", Note::Kind::plain)) {
     dequantize_ = named(new QCheckBox(tr("dequantize")), "dequantize",
                         tr("Give back what rounding to levels took, against terraces and the stair "
                            "steps of masks.\nThe volume is read again; edits are lost."));
@@ -49,14 +50,12 @@ IsovalueControls::IsovalueControls(const Desk& desk)
     each_time(chart_, [this](LevelChart& chart) {
         chart.set_level(layered() ? std::nan("") : level_->value());
     });
-    auto* warning =
-        each_time(new Note("isovalue_warning", Note::Kind::warning), [this](Note& note) {
-            const bool felt = effect_.there() && !layered();
-            note.say(
-                felt ? QString::fromStdString(isovalue_warning(effect_.field(), effect_.isovalue()))
-                     : QString());
-        });
-    auto* thin = each_time(new Note("one_slice", Note::Kind::plain), [this](Note& note) {
+    each_time(new Note(this, "isovalue_warning", Note::Kind::warning), [this](Note& note) {
+        const bool felt = effect_.there() && !layered();
+        note.say(felt ? in_words(isovalue_warning(effect_.field(), effect_.isovalue()))
+                      : QString());
+    });
+    each_time(new Note(this, "one_slice", Note::Kind::plain), [this](Note& note) {
         const bool smooth = effect_.there() && !layered() &&
                             effect_.field().interpolation() == Interpolation::cubic;
         const bool is_slice = smooth && effect_.field().geometry().size.minCoeff() == 1;
@@ -64,8 +63,8 @@ IsovalueControls::IsovalueControls(const Desk& desk)
                                "that are little above the isovalue, the linear one has none.")
                           : QString());
     });
-    column_in(this, {chart_, slider, row_of({level_, dequantize_}, 1), make_field(), terraces_,
-                     warning, thin, row_of({make_overruled(), felt_}, 0)})
+    note_overruled();
+    column_in(this, {chart_, slider, row_of({level_, dequantize_}, 1), make_field(), felt_})
         ->setSpacing(3);
     connect(chart_, &LevelChart::level_moved, level_, &Quantity::ask);
     connect(&effect_, &Effect::observed, this, [this](const Snapshot& now) {
@@ -81,12 +80,8 @@ bool IsovalueControls::layered() const {
 }
 
 /// The isovalue does nothing while layers are used, and follows the hand that presses through.
-QWidget* IsovalueControls::make_overruled() {
-    auto* note = new Note("isovalue_overruled", Note::Kind::plain);
-    QSizePolicy keeps_room = note->sizePolicy();  // so that what is below does not jump
-    keeps_room.setRetainSizeWhenHidden(true);
-    note->setSizePolicy(keeps_room);
-    return each_time(note, [this](Note& shown) {
+void IsovalueControls::note_overruled() {
+    each_time(new Note(this, "isovalue_overruled", Note::Kind::plain), [this](Note& shown) {
         const RendererSettings& now = effect_.settings();
         shown.say(
             levels_in(now.layers) > 0 ? tr("Layers have levels of their own: drag their squares.")

@@ -28,7 +28,7 @@ class IsovalueControls : public EffectForm, protected Desk {
 
   private:
     QWidget* make_field();
-    QWidget* make_overruled();
+    void note_overruled();
     void begin() override;
     void clear() override;
     bool layered() const;

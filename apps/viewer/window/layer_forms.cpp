@@ -320,8 +320,7 @@ QWidget* LayersControls::make_curve(Curve PropertyCurves::*curve, const QString&
 
 /// Over density, which lies on the histogram, and over the gradient, on a chart of its own.
 QWidget* LayersControls::make_curves() {
-    auto* own = new Note("curve_note", Note::Kind::plain);
-    each_time(own, [this](Note& note) {
+    each_time(new Note(this, "curve_note", Note::Kind::plain), [this](Note& note) {
         const bool hidden = !all()[property_].density.knots.empty() && count() > 0 &&
                             std::ranges::all_of(all().layers, [this](const Layer& one) {
                                 return one[property_].has_value();
@@ -370,8 +369,8 @@ QWidget* LayersControls::make_curves() {
         chart.setVisible(!knots.empty());
     });
     auto* which = make_property();
-    auto* column = column_of({row_of({label_for(tr("Curve"), which), which}, 1), over_density, own,
-                              over_gradient, factors_});
+    auto* column = column_of(
+        {row_of({label_for(tr("Curve"), which), which}, 1), over_density, over_gradient, factors_});
     column->layout()->setSpacing(2);
     return column;
 }

@@ -16,8 +16,8 @@
 #include "apps/viewer/model/session_file.hpp"
 #include "apps/viewer/model/transfer.hpp"
 #include "apps/viewer/panel/form.hpp"
-#include "apps/viewer/panel/stroke_plot.hpp"
 #include "apps/viewer/panel/sentences.hpp"
+#include "apps/viewer/panel/stroke_plot.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
 #include "apps/viewer/window/look_controls.hpp"
@@ -40,7 +40,7 @@ LayersControls::LayersControls(const Desk& desk, LookControls& look, OverlayCont
       overlays_(overlays),
       reader_(messages_),
       choice_(named(new QComboBox, "layers", tr("Layers: several surfaces in one stroke"))),
-      note_(new Note("layers_note", Note::Kind::plain)),
+      note_(new Note(this, "layers_note", Note::Kind::plain)),
       touched_(named(new QLabel, "touched_layers",
                      tr("The layer that is touched, and those that the proxy is in"))),
       list_(named(new QListWidget, "layer_list")),
@@ -59,7 +59,7 @@ LayersControls::LayersControls(const Desk& desk, LookControls& look, OverlayCont
         [this] { plot_->clear(); });
     auto* body = column_of({row_of({touched_, clear}, 0), plot_, make_list()});
     each_time(body, [this](QWidget& one) { one.setVisible(layers() != nullptr); });
-    column_in(this, {make_choice(), note_, body});
+    column_in(this, {make_choice(), body});
     try {
         for (io::LayersPreset& preset : io::layers_presets()) {
             files_.push_back(std::move(preset.file));

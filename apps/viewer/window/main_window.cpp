@@ -93,17 +93,17 @@ MainWindow::MainWindow(const RunRequest& request, MakePainter make_painter)
     use(saved_preferences());
     panel_->device_controls().find_devices();
     timer_.start(frame_ms);
-}
     if (auto* application = dynamic_cast<Application*>(qApp)) {
         application->on_failure = [this](const std::exception&) {
             messages_.guarded([] { throw; });
         };
     }
+}
 
 MainWindow::~MainWindow() {
     timer_.stop();
-    content_.end_run();  // before anything that takes time
     if (auto* application = dynamic_cast<Application*>(qApp)) application->on_failure = nullptr;
+    content_.end_run();  // before anything that takes time
     delete panel_;       // it may still ask for something when it loses the focus
 }
 
@@ -292,6 +292,7 @@ void MainWindow::tick() {
         panel_->brush_controls().observe();
         playing_.observe();
     }
+    if (rounds_ % panel_rounds == 0) hints_.show_notes(panel_->notes());
     if (now && rounds_ % device_rounds == 0) {
         panel_->hand_switch().show_hands();
         panel_->device_controls().observe(*now);

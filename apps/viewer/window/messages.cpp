@@ -66,11 +66,11 @@ QString breakable(QString text) {
 void Messages::show_problem(const QString& what, int status) {
     problem_ = what;
     problem_status_ = status;
-    std::fprintf(stderr, "palpate: %s\n", what.toLocal8Bit().constData());
     const QString text = breakable(what);
     for (const auto* open : window_->findChildren<QMessageBox*>("problem")) {
         if (open->isVisible() && open->text() == text) return;
     }
+    std::fprintf(stderr, "palpate: %s\n", what.toLocal8Bit().constData());
     auto* box = new QMessageBox(QMessageBox::Warning, "Palpate", text, QMessageBox::Ok, window_);
     box->setObjectName("problem");
     box->setTextFormat(Qt::PlainText);  // also of a file with a name like "<b>"

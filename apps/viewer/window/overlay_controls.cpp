@@ -36,7 +36,7 @@ OverlayControls::OverlayControls(const Desk& desk, LookControls& look)
       image_surface_({2000000, 40000}),
       loader_(messages_),
       name_(named(new QLabel, "overlay_name")),
-      beside_(new Note("overlay_beside", Note::Kind::warning)),
+      beside_(new Note(this, "overlay_beside", Note::Kind::warning)),
       labels_(named(new QListWidget, "overlay_labels",
                     tr("Labels; a double click goes to where one lies"))) {
     const Parts<OverlayLook> its{[this]() -> const OverlayLook& { return its_look(); },
@@ -79,7 +79,7 @@ OverlayControls::OverlayControls(const Desk& desk, LookControls& look)
         {label_for(tr("Colours"), colours), colours, label_for(tr("Level"), level), level}, 3);
     make_labels();
     body_ = column_of({slices, scene, image_, labels_, feel_});
-    column_in(this, {row_of({open, close_, name_}, 2), beside_, body_});
+    column_in(this, {row_of({open, close_, name_}, 2), body_});
     connect(&look, &LookControls::look_changed, this, [this] {
         refresh();
         show_surfaces();

@@ -36,6 +36,7 @@ class Page : public QScrollArea {
         setWidgetResizable(true);
         setFrameShape(QFrame::NoFrame);
         setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+        setMinimumHeight(12 * fontMetrics().lineSpacing());  // the chart above gives its room
         fit();
     }
 
@@ -146,6 +147,14 @@ void Panel::show_section(const QWidget& content) {
     for (auto* section : findChildren<Section*>()) {
         if (section->isAncestorOf(&content)) section->set_open(true);
     }
+}
+
+QList<const Note*> Panel::notes() const {
+    QList<const Note*> said;
+    for (const Note* note : findChildren<Note*>()) {
+        if (note->isVisibleTo(this)) said << note;
+    }
+    return said;
 }
 
 QStringList Panel::folded() const {

@@ -30,6 +30,8 @@ class Panel : public QWidget {
     explicit Panel(const Desk& desk, QWidget* parent = nullptr);
     ~Panel() override;
     QSize sizeHint() const override;
+    /// Those that are said, of the sections that are seen.
+    QList<const Note*> notes() const;
 
     IsovalueControls& isovalue_controls() { return *isovalue_; }
     LookControls& look_controls() { return *look_; }

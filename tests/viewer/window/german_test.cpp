@@ -244,6 +244,25 @@ TEST_F(German, no_page_of_the_panel_is_cut_off_whatever_is_unfolded) {
     }
 }
 
+TEST_F(German, a_refusal_and_a_warning_are_german) {
+    open_german();
+    feel("synthetic:sphere:24x24x24");
+    auto& stiffness = on_page<NumberBox>("stiffness_box");
+    const auto type = [](NumberBox& box, const char* number) {
+        box.setFocus();
+        QTest::keyClick(&box, Qt::Key_A, Qt::ControlModifier);
+        QTest::keyClicks(&box, number);
+        QTest::keyClick(&box, Qt::Key_Return);
+    };
+    type(stiffness, "-1");
+    EXPECT_EQ(part<QLabel>("force_part_message").text(),
+              "Steifigkeit [N/mm] = -1: erlaubt ist endlich und mindestens 0");
+    type(stiffness, "1e6");
+    EXPECT_TRUE(part<QLabel>("force_part_message").text().contains("um stabil zu sein"));
+    type(on_page<NumberBox>("isovalue_box"), "1e6");
+    wait_until([&] { return part<QLabel>("isovalue_warning").text().contains("Nichts ist fest"); });
+}
+
 TEST_F(German, a_new_layer_has_a_german_name) {
     open_german();
     feel_sample();

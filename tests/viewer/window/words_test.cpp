@@ -4,6 +4,8 @@
 #include <QLabel>
 #include <QTextBrowser>
 
+#include <map>
+
 #include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/panel/layout.hpp"
 #include "viewer/window/window_fixture.hpp"
@@ -136,6 +138,92 @@ TEST_F(WordsInWindow, stay_in_their_place_when_the_hand_touches) {
     press_until_force();
     wait_until([&] { return part<QLabel>("contact").text().startsWith("In contact"); });
     EXPECT_EQ(places(), before);
+}
+
+/// Places of all that is seen of the panel, by its names.
+std::map<QString, QRect> places_in(const QWidget& panel) {
+    std::map<QString, QRect> places;
+    for (const auto* one : panel.findChildren<QWidget*>()) {
+        if (!one->isVisible() || one->objectName().isEmpty() || qobject_cast<const Note*>(one)) {
+            continue;
+        }
+        places[one->objectName()] = {one->mapTo(&panel, QPoint()), one->size()};
+    }
+    return places;
+}
+
+TEST_F(WordsInWindow, of_a_note_lie_over_the_picture_and_move_nothing_in_the_panel) {
+    feel("synthetic:sphere:24x24x24");
+    auto& tabs = part<QTabWidget>("tabs");
+    int said = 0;
+    for (int page = 0; page < tabs.count(); ++page) {
+        tabs.setCurrentIndex(page);
+        for (auto* section : window_->findChildren<Section*>()) {
+            section->set_open(section->objectName() != "loop_part");  // whose numbers change
+        }
+        for (int i = 0; i < 8; ++i) window_->tick();
+        wait_until_quiet(*window_);
+        const auto before = places_in(window_->panel());
+        for (Note* note : window_->panel().findChildren<Note*>()) {
+            if (!note->parentWidget()->isVisibleTo(&window_->panel())) continue;
+            ++said;
+            const QString words = "Word upon word about " + note->objectName();
+            note->say(words);
+            window_->tick();
+            window_->tick();
+            handle_events();
+            EXPECT_TRUE(places_in(window_->panel()) == before) << words.toStdString();
+            EXPECT_TRUE(part<QLabel>("notes").isVisible());
+            EXPECT_TRUE(part<QLabel>("notes").text().contains(words));
+            note->say({});
+        }
+    }
+    EXPECT_GT(said, 12);
+}
+
+TEST_F(WordsInWindow, of_a_refusal_are_seen_over_the_picture_until_they_are_closed) {
+    feel("synthetic:sphere:24x24x24");
+    auto& box = on_page<NumberBox>("threshold_box");
+    auto& notes = part<QLabel>("notes");
+    const auto type = [&](const char* number) {
+        box.setFocus();
+        QTest::keyClick(&box, Qt::Key_A, Qt::ControlModifier);
+        QTest::keyClicks(&box, number);
+        QTest::keyClick(&box, Qt::Key_Return);
+    };
+    part<QAbstractButton>("penetrability").click();
+    for (int i = 0; i < 8; ++i) window_->tick();
+    wait_until_quiet(*window_);
+    const auto before = places_in(window_->panel());
+    type("-1");
+    wait_until([&] { return notes.isVisible() && notes.text().contains("at least 0 mm"); });
+    EXPECT_TRUE(places_in(window_->panel()) == before);
+    EXPECT_TRUE(part<QToolButton>("penetrability_part_heading").toolTip().contains("at least 0"));
+    save("note");
+    // The cross is at the end of its line.
+    const auto is_shown = [&] { return notes.isVisible() && notes.text().contains("at least 0"); };
+    for (int y = 6; y < notes.height() && is_shown(); y += 6) {
+        for (int x = notes.width() - 2; x > 0 && is_shown(); x -= 3) {
+            QTest::mouseClick(&notes, Qt::LeftButton, {}, {x, y});
+            window_->tick();
+            window_->tick();
+        }
+    }
+    EXPECT_FALSE(is_shown());
+    EXPECT_TRUE(part<QToolButton>("penetrability_part_heading").toolTip().contains("at least 0"));
+    type("2");
+    type("-1");
+    wait_until([&] { return notes.isVisible() && notes.text().contains("at least 0 mm"); });
+}
+
+TEST_F(WordsInWindow, leave_the_pages_a_third_of_a_small_window) {
+    window_->resize(1024, 700);
+    feel("synthetic:sphere:24x24x24");
+    wait_until_quiet(*window_);
+    EXPECT_LE(window_->height(), 700);
+    const QWidget& page = *part<QTabWidget>("tabs").currentWidget();
+    EXPECT_GE(page.height(), 12 * page.fontMetrics().lineSpacing());
+    save("small");
 }
 
 }  // namespace
