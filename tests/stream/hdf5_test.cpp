@@ -169,7 +169,9 @@ TEST(Hdf5, registrations_of_bigdataviewer_that_stretch_count_where_no_voxel_size
         const StoreInfo& info = store->info();
         EXPECT_EQ(info.levels.at(0).geometry.spacing, one.spacing) << one.affine;
         ASSERT_EQ(info.notes.size(), *one.note ? 1U : 0U) << one.affine;
-        if (*one.note) EXPECT_TRUE(contains(info.notes[0], one.note)) << info.notes[0];
+        if (*one.note) {
+            EXPECT_TRUE(contains(info.notes[0], one.note)) << info.notes[0];
+        }
     }
 }
 
