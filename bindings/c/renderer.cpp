@@ -51,6 +51,7 @@ extern "C" PALPATE_API palpate_status palpate_renderer_set_isovalue(palpate_rend
         Renderer& r = given(renderer, "renderer").renderer;
         check_isovalue(isovalue, r.field.solid());
         use_isovalue(r, isovalue);
+        r.force.changed = true;  // the force rises with the ramp, as after a command
     });
 }
 

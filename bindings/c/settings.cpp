@@ -78,6 +78,7 @@ extern "C" PALPATE_API palpate_status palpate_renderer_set(palpate_renderer* ren
         change(changed, &given(name, "name"), value);
         check(changed);
         r.settings = changed;
+        r.force.changed = true;
     });
 }
 

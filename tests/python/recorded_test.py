@@ -96,3 +96,11 @@ def test_a_shifted_surface_is_an_error_of_its_spring_in_the_metrics_of_recording
     pulled = made._replace(force=-made.force)  # the force on the surface, which is not that on the hand
     with pytest.raises(ValueError, match="outwards"):
         recorded.device_of(pulled, recorded.plane_through(pulled))
+
+
+def test_the_page_says_which_recordings_were_read(tmp_path):
+    assert recorded.origin_of([]).startswith("None were available")
+    (tmp_path / "mine").mkdir()
+    write(recorded.modelled(1, 2), tmp_path / "mine/probe.traj")
+    made = " ".join(recorded.run(Options(quick=True, seeds=1, data=tmp_path)).paragraphs)
+    assert "From there: mine. The others here are modelled." in made and "None were available" not in made

@@ -79,6 +79,16 @@ def test_what_is_there_and_whole_is_kept_and_a_setup_is_added(client, motion, tm
     assert traces["ball"].has_tool and traces["ball"].contacts.max() > 0
 
 
+@pytest.mark.parametrize("given", [lambda tool: {"tool": str(tool)}, lambda tool: palpate.RenderSetup(tool=str(tool))])
+def test_a_trace_is_made_again_when_the_file_of_its_tool_has_changed(client, motion, tmp_path, given):
+    tool, made = tmp_path / "tool.csv", []
+    for radius in (1, 1, 3):
+        tool.write_text("x,y,z\n" + "".join(f"{x},{y},{z}\n" for x, y, z in palpate.Tool.named(f"sphere:{radius}", 1.0).points))
+        made.append(study(client, SOURCE, *motion, {"ball": given(tool)}, tmp_path / "out")["ball"])
+    assert same(made[0], made[1]) and not same(made[1], made[2])
+    assert same(made[2], on_one_machine({"tool": str(tool)}, motion, {}))
+
+
 def test_wrong_names_and_fields_are_refused_before_anything_runs(client, motion, tmp_path):
     with pytest.raises(ValueError, match="names of files"):
         study(client, SOURCE, *motion, {"../up": {}}, str(tmp_path / "out"))

@@ -46,6 +46,22 @@ def _files_of(source):
     return [source, *filter(os.path.isfile, named)]
 
 
+def _named_files(value):
+    """(name, SHA-256) of each file that settings name, such as that of a tool, however deep they are nested."""
+    if isinstance(value, (str, bytes, os.PathLike)):
+        try:
+            return [(os.fsdecode(value), hashlib.sha256(Path(os.fsdecode(value)).read_bytes()).hexdigest())]
+        except (OSError, ValueError):  # another text than the name of a file
+            return []
+    if isinstance(value, Mapping):
+        parts = value.values()
+    elif isinstance(value, (list, tuple)):
+        parts = value
+    else:
+        parts = [getattr(value, name) for name in getattr(type(value), "_fields", ())]
+    return [file for part in parts for file in _named_files(part)]
+
+
 def _write(path, key, trace):
     """Whole or not at all; `key` says of what."""
     rest = json.dumps({"key": key, "summary": trace.summary, "layer_names": list(trace.layer_names),
@@ -91,7 +107,7 @@ def study(client: Client, source: Name, isovalue: Union[float, str], time: Any, 
     source: what load() reads, with `loading` for it (smooth=1, dequantize=40, ...); field: of Field
     (solid, background, interpolation). isovalue, time, position, orientation_xyzw: as for replay().
     setups: a RenderSetup or its fields by name. out: a folder that gets NAME.npz for each; traces that
-    are there already, whole and of the same work, are kept. progress('study', done, all) may raise to
+    are there already, whole and of the same work with the same files, are kept. progress('study', done, all) may raise to
     stop. Raises ValueError, InputError, OutputError.
     """
     source, out = os.fsdecode(source), os.fsdecode(out)
@@ -107,14 +123,14 @@ def study(client: Client, source: Name, isovalue: Union[float, str], time: Any, 
     motion = [numpy.ascontiguousarray(a, dtype=float) if a is not None else None
               for a in (time, position, orientation_xyzw)]
     options = pickle.dumps((loading or {}, field or {}))
-    same = hashlib.sha256(pickle.dumps(("xyzw", __version__, source, files, isovalue, options)))
+    same = hashlib.sha256(pickle.dumps(("xyzw", __version__, source, files, isovalue, options, _named_files([loading, field]))))
     files = same.hexdigest()
     for array in motion:
         same.update(b"none" if array is None else array.tobytes())
     work = []
     for name, setup in made.items():
         key = same.copy()
-        key.update(pickle.dumps(setup))
+        key.update(pickle.dumps((setup, _named_files(setup))))
         work.append((name, key.hexdigest(), setup))
     check_workers(client)
     folder = os.path.abspath(out)

@@ -166,6 +166,13 @@ def recordings_of(options):
         yield one, scanned(palpate.read_mesh(mesh)) if mesh.exists() else plane_through(one)
 
 
+def origin_of(read):
+    """A sentence: which recordings are from the data folder."""
+    if not read:
+        return "None were available, so the recordings here are modelled."
+    return f"From there: {', '.join(read)}. The others here are modelled."
+
+
 def summary_of(table):
     for samples in SAMPLES:
         for name in CONTESTANTS:
@@ -212,5 +219,6 @@ def run(options):
         voxel = numpy.ptp(recording.position, axis=0).max() / (40 if options.quick else 80)
         found += rows_of(recording, surface, samples, voxel)
     table, shown = Table(row for row, _ in found), {row["method"]: force for row, force in found[:len(CONTESTANTS)]}
-    text = PAGE.text(names=", ".join(recording.name for recording, _ in cases), tremor=1000 * Human.tremor, delay=1000 * Human.delay)
+    names = [recording.name for recording, _ in cases]
+    text = PAGE.text(names=", ".join(names), origin=origin_of(names[1 + options.seeds:]), tremor=1000 * Human.tremor, delay=1000 * Human.delay)
     return Result(table, [figure_of(*cases[0], shown, table)], claims_of(table), text, summary_of(table))
