@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
@@ -12,8 +11,6 @@
 #include <sstream>
 #include <utility>
 
-#include "io/file_grid.hpp"
-#include "io/helper/dicom_text.hpp"
 #include "io/helper/headers.hpp"
 
 namespace palpate::io {
@@ -39,7 +36,9 @@ void set_pixel_of_region(DicomSlice& s, const DicomGroup& data) {
         if (along_x != std::vector{centimetres} || along_y != along_x) continue;  // no lengths
         const Vec3 size(10 * std::abs(region.real({0x0018, 0x602c})),
                         10 * std::abs(region.real({0x0018, 0x602e})), 0);
-        if (!is_file_spacing(size.x()) || !is_file_spacing(size.y())) continue;
+        if (!(size.head<2>().minCoeff() >= least_length && size.maxCoeff() <= greatest_length)) {
+            continue;
+        }
         if (pixel && *pixel != size) {
             add_note(s.notes, "its regions have pixels of different sizes, which were not used");
             return;
@@ -131,48 +130,31 @@ void set_padding(DicomSlice& s, const DicomGroup& data) {
 constexpr std::size_t most_dimensions =
     64;  // of a frame; keys are compared in time that rises with them
 
-int digits_in(const std::string& text, std::size_t at, std::size_t count) {
-    int value = -1;
-    const std::string part = at < text.size() ? text.substr(at, count) : "";
-    std::from_chars(part.data(), part.data() + part.size(), value);
-    return value;
-}
-
-/// [s] by which a clock is ahead of UTC (+ZZXX, PS3.5 6.2).
-double zone_of(const std::string& suffix) {
-    if (suffix.size() < 5) return 0;
-    const int hours = digits_in(suffix, 1, 2), minutes = digits_in(suffix, 3, 2);
-    return (suffix[0] == '-' ? -60 : 60) * (60.0 * std::max(hours, 0) + std::max(minutes, 0));
-}
-
-/// [s] of a date (YYYYMMDD) and a time (HHMMSS.FFFFFF); NaN if the time is missing. `zone`: of a
-/// time without an own one (+ZZXX).
-double moment_of(const std::string& date, std::string time, std::string zone) {
-    using std::chrono::year, std::chrono::month;
-    if (const auto sign = time.find_first_of("+-"); sign != std::string::npos) {
-        zone = time.substr(sign);
-        time.resize(sign);
-    }
+/// [s] of a date (YYYYMMDD) and a time (HHMMSS.FFFFFF), or of both in one (DT); NaN if a part is
+/// missing. The date counts from any day.
+double moment_of(const std::string& date, std::string time) {
     std::erase(time, ':');  // of old files
-    // Some writers leave out the first digit of the hour.
-    if (std::min(time.find('.'), time.size()) % 2 == 1) time.insert(0, "0");
-    const int hours = digits_in(time, 0, 2), minutes = std::max(digits_in(time, 2, 2), 0);
+    const auto digits = [](const std::string& text, std::size_t at, std::size_t count) {
+        int value = -1;
+        const std::string part = at < text.size() ? text.substr(at, count) : "";
+        std::from_chars(part.data(), part.data() + part.size(), value);
+        return value;
+    };
+    const int hours = digits(time, 0, 2), minutes = std::max(digits(time, 2, 2), 0);
+    const int year = digits(date, 0, 4), month = std::max(digits(date, 4, 2), 1);
     if (hours < 0) return std::numeric_limits<double>::quiet_NaN();
-    const std::chrono::sys_days first_of_month =
-        year(std::max(digits_in(date, 0, 4), 0)) /
-        month(static_cast<unsigned>(std::clamp(digits_in(date, 4, 2), 1, 12))) / 1;
-    const int days = static_cast<int>(first_of_month.time_since_epoch().count()) +
-                     std::max(digits_in(date, 6, 2), 1);
+    const int day = std::max(digits(date, 6, 2), 1);
     const double fraction =
-        digits_in(time, 7, 6) < 0 ? 0 : std::strtod(("0." + time.substr(7, 6)).c_str(), nullptr);
-    const double seconds = std::max(digits_in(time, 4, 2), 0) + fraction;
-    return days * 86400.0 + hours * 3600 + minutes * 60 + seconds - zone_of(zone);
+        digits(time, 7, 6) < 0 ? 0 : std::strtod(("0." + time.substr(7, 6)).c_str(), nullptr);
+    const double seconds = std::max(digits(time, 4, 2), 0) + fraction;
+    // Months of 31 days keep the order, which is all that counts.
+    return ((std::max(year, 0) * 12.0 + month) * 31 + day) * 86400 + hours * 3600 + minutes * 60 +
+           seconds;
 }
 
-/// Of both in one (DT).
-double moment_of(const std::string& both, const std::string& zone) {
+double moment_of(const std::string& both) {
     return both.size() < 10 ? std::numeric_limits<double>::quiet_NaN()
-                            : moment_of(both.substr(0, 8), both.substr(8), zone);
+                            : moment_of(both.substr(0, 8), both.substr(8));
 }
 
 void add_kind(DicomSlice& s, const std::string& kind) {
@@ -199,15 +181,8 @@ void set_place(DicomSlice& s, const std::vector<double>& p, const std::vector<do
     }
     s.row = Vec3(axes[0], axes[1], axes[2]);
     s.column = Vec3(axes[3], axes[4], axes[5]);
-    constexpr double most = 0.01, rounding = 1e-4;  // from length 1
     for (const auto& direction : {s.row, s.column}) {
-        const double off = std::abs(direction->norm() - 1);
-        if (off > rounding && off <= most) {
-            add_note(s.notes,
-                     "the vectors of its axes are not quite of length 1: they were taken as "
-                     "directions only, and the spacing is as it is given");
-        }
-        if (off <= most) continue;
+        if (direction->norm() > 0.5 && direction->norm() < 2) continue;
         throw Failure("its DICOM tag ImageOrientationPatient has no unit vectors; correct it");
     }
 }
@@ -301,20 +276,15 @@ void finish_values(DicomSlice& s, const DicomGroup& data) {
 
 Segments segments_in(const DicomGroup& data) {
     Segments names;
-    const std::string sets = data.text({0x0008, 0x0005});
     for (const DicomGroup& segment : data.items({0x0062, 0x0002})) {
         const auto number = segment.binary<std::uint16_t>({0x0062, 0x0004});
-        if (!number.empty()) names[number[0]] = dicom_in_utf8(segment.text({0x0062, 0x0005}), sets);
+        if (!number.empty()) names[number[0]] = segment.text({0x0062, 0x0005});
     }
     return names;
 }
 
-/// MAGNITUDE, PHASE, REAL or IMAGINARY (PS3.3 C.8.13.3.1.1).
-constexpr DicomTag complex_component{0x0008, 0x9208};
-
 /// Properties that distinguish images of one place in one series: magnitude or phase (the third
-/// value of ImageType, or ComplexImageComponent), the echo, the weighting by diffusion, and further
-/// values of ImageType.
+/// value of ImageType), the echo, the weighting by diffusion, and further values of ImageType.
 void set_kind(DicomSlice& s, const DicomGroup& data) {
     std::istringstream values(data.text({0x0008, 0x0008}));
     std::string value;
@@ -323,13 +293,8 @@ void set_kind(DicomSlice& s, const DicomGroup& data) {
         if (i == 2) s.kind = value;
         if (i > 2) s.contrast += (s.contrast.empty() ? "" : " ") + value;
     }
-    add_kind(s, data.text(complex_component));
     if (const auto echo = data.numbers({0x0018, 0x0081}); !echo.empty()) s.echo = echo[0];
     add_kind(s, "b-value ", data.real({0x0018, 0x9087}), " s/mm2");
-    const double kilovolts = data.optional_number({0x0018, 0x0060});
-    if (std::isfinite(kilovolts)) s.setting = text_of(kilovolts) + " kV";
-    const std::string kernel = data.text({0x0018, 0x1210});
-    if (!kernel.empty()) s.setting += (s.setting.empty() ? "" : ", ") + ("kernel " + kernel);
 }
 
 /// Properties that order the images of one place in one series.
@@ -346,16 +311,12 @@ void set_moment(DicomSlice& s, const DicomGroup& data) {
     s.keys[temporal_position] = data.optional_number({0x0020, 0x0100});
     s.keys[trigger_time] = data.optional_number({0x0018, 0x1060});
     s.keys[reference_time] = data.optional_number({0x0054, 0x1300});
-    s.keys[inversion_time] = data.optional_number({0x0018, 0x0082});
-    s.keys[flip_angle] = data.optional_number({0x0018, 0x1314});
-    s.zone = data.text({0x0008, 0x0201});
-    s.keys[acquisition_time] = moment_of(data.text({0x0008, 0x002a}), s.zone);
+    s.keys[acquisition_time] = moment_of(data.text({0x0008, 0x002a}));
     if (std::isnan(s.keys[acquisition_time])) {
         s.keys[acquisition_time] =
-            moment_of(data.text({0x0008, 0x0022}), data.text({0x0008, 0x0032}), s.zone);
+            moment_of(data.text({0x0008, 0x0022}), data.text({0x0008, 0x0032}));
     }
-    s.keys[content_time] =
-        moment_of(data.text({0x0008, 0x0023}), data.text({0x0008, 0x0033}), s.zone);
+    s.keys[content_time] = moment_of(data.text({0x0008, 0x0023}), data.text({0x0008, 0x0033}));
     s.keys[acquisition_number] = number_of({0x0020, 0x0012});
     s.keys[frame_number] = number;
 }
@@ -370,10 +331,7 @@ void set_kind(DicomSlice& s, const FunctionalGroups& groups, const Segments& seg
                                 {0x0018, 0x9504},
                                 {0x0040, 0x9092},
                                 {0x0018, 0x9806}}) {
-        groups.with(type, [&](const DicomGroup& g) {
-            add_kind(s, g.text({0x0008, 0x9007}));
-            add_kind(s, g.text(complex_component));
-        });
+        groups.with(type, [&](const DicomGroup& g) { add_kind(s, g.text({0x0008, 0x9007})); });
     }
     groups.with({0x0018, 0x9114}, [&](const DicomGroup& g) { s.echo = g.real({0x0018, 0x9082}); });
     groups.with({0x0018, 0x9117}, [&](const DicomGroup& g) {
@@ -397,8 +355,8 @@ void set_moment(DicomSlice& s, const FunctionalGroups& groups) {
         if (s.is_numbered) s.order = static_cast<int>(place[0]);
         const auto moment = g.binary<std::uint32_t>({0x0020, 0x9128});
         if (!moment.empty()) s.keys[temporal_position] = moment[0];
-        s.keys[reference_time] = moment_of(g.text({0x0018, 0x9151}), s.zone);
-        s.keys[acquisition_time] = moment_of(g.text({0x0018, 0x9074}), s.zone);
+        s.keys[reference_time] = moment_of(g.text({0x0018, 0x9151}));
+        s.keys[acquisition_time] = moment_of(g.text({0x0018, 0x9074}));
         const auto dimensions = g.binary<std::uint32_t>({0x0020, 0x9157});
         if (dimensions.size() > most_dimensions) {
             throw Failure("has too many dimensions (DimensionIndexValues); export it again");
@@ -408,12 +366,6 @@ void set_moment(DicomSlice& s, const FunctionalGroups& groups) {
     groups.with({0x0018, 0x9118}, [&](const DicomGroup& g) {
         s.keys[trigger_time] = g.real({0x0020, 0x9153});
         s.keys[cardiac_phase] = g.real({0x0020, 0x9241});
-    });
-    groups.with({0x0018, 0x9115}, [&](const DicomGroup& g) {
-        s.keys[inversion_time] = g.real({0x0018, 0x9079});
-    });
-    groups.with({0x0018, 0x9112}, [&](const DicomGroup& g) {
-        s.keys[flip_angle] = g.optional_number({0x0018, 0x1314});
     });
     groups.with({0x0020, 0x9310}, [&](const DicomGroup& g) {
         s.keys[reference_time] = g.real({0x0020, 0x930d});

@@ -25,8 +25,6 @@ const char* const implicit_syntax = "1.2.840.10008.1.2";
 const char* const explicit_syntax = "1.2.840.10008.1.2.1";
 const char* const big_endian_syntax = "1.2.840.10008.1.2.2";
 const char* const deflated_syntax = "1.2.840.10008.1.2.1.99";
-/// Of GE: elements little-endian and without types, samples big-endian.
-const char* const ge_syntax = "1.2.840.113619.5.2";
 const char* const jpeg_2000_syntax = "1.2.840.10008.1.2.4.90";
 
 /// JPEG 2000 with another coding of its blocks, which the library that unpacks it reads as well.
@@ -125,8 +123,7 @@ class Walk : private DicomElements {
 
     /// Whether elements have types. Some writers name the syntax without types and write them.
     bool has_types(const std::string& syntax) {
-        if (syntax != implicit_syntax && syntax != ge_syntax) return true;
-        if (!bytes_.reaches(data_set_ + 8)) return true;
+        if (syntax != implicit_syntax || !bytes_.reaches(data_set_ + 8)) return true;
         const std::string first = {number<char>(data_set_ + 4), number<char>(data_set_ + 5)};
         if (!is_type(first)) return false;
         extent_.notes.emplace_back(
@@ -289,8 +286,7 @@ class Walk : private DicomElements {
         pixels_.at = at;
         extent_.is_real = is_real;
         // Bytes have no order, but some writers call words so; other readers take them as words.
-        if ((bytes_.swapped() && (e.vr != "OB" || extent_.bits > 8)) ||
-            (extent_.syntax == ge_syntax && extent_.bits > 8)) {
+        if (bytes_.swapped() && (e.vr != "OB" || extent_.bits > 8)) {
             extent_.swapped_bytes =
                 static_cast<std::size_t>(std::max<std::int64_t>(2, extent_.bits / 8));
         }
@@ -331,10 +327,6 @@ class Walk : private DicomElements {
         if (pixels_.plain) {
             if (const auto note = check_plain_pixels(file_, bytes_, pixels_, extent_)) {
                 extent_.notes.push_back(*note);
-            }
-            if (!syntax.starts_with(implicit_syntax) && syntax != ge_syntax) {
-                extent_.notes.push_back("its transfer syntax '" + syntax +
-                                        "' is not known: its samples were read as little-endian");
             }
             return;
         }

@@ -274,7 +274,6 @@ std::vector<DicomSlice> plain_frames(DicomSlice file, const DicomGroup& data) {
             check_coordinate(offset, is_grid ? "GridFrameOffsetVector" : "SliceLocationVector");
         }
         if (offsets.size() == slices.size()) {
-            for (std::size_t i = 0; i < slices.size(); ++i) slices[i].location = offsets[i];
             place_behind(slices, is_grid ? along_normal(offsets, file) : offsets);
             // PS3.3 leaves open in which direction SliceLocation counts.
             for (DicomSlice& s : slices) s.is_sided = is_grid;

@@ -10,7 +10,6 @@
 #include "io/helper/dicom_check.hpp"
 #include "io/helper/dicom_frames.hpp"
 #include "io/helper/dicom_group.hpp"
-#include "io/helper/dicom_text.hpp"
 #include "io/helper/headers.hpp"
 #include "io/system/number.hpp"
 
@@ -40,13 +39,12 @@ DicomSlice file_as_slice(const fs::path& file, const DicomExtent& extent, const 
     s.frames = static_cast<int>(extent.frames);
     s.instance_uid = data.text({0x0008, 0x0018});
     s.series_uid = data.text({0x0020, 0x000e});
-    const std::string sets = data.text({0x0008, 0x0005});
-    s.description = dicom_in_utf8(data.text({0x0008, 0x103e}), sets);
+    s.description = data.text({0x0008, 0x103e});
     set_kind(s, data);
     set_moment(s, data);
-    s.patient = dicom_in_utf8(data.text({0x0010, 0x0010}), sets);
-    s.study = dicom_in_utf8(data.text({0x0008, 0x1030}), sets);
-    s.patient_id = dicom_in_utf8(data.text({0x0010, 0x0020}), sets);
+    s.patient = data.text({0x0010, 0x0010});
+    s.study = data.text({0x0008, 0x1030});
+    s.patient_id = data.text({0x0010, 0x0020});
     s.study_uid = data.text({0x0020, 0x000d});
     s.frame_of_reference = data.text({0x0020, 0x0052});
     set_place(s, data);

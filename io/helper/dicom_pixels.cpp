@@ -32,7 +32,6 @@ std::string compression_of(const std::string& syntax) {
     if (rest.rfind("4.9", 0) == 0 || rest.rfind("4.20", 0) == 0) return "JPEG 2000";
     if (rest.rfind("4.10", 0) == 0) return "video";
     if (rest.rfind("4.11", 0) == 0) return "JPEG XL";
-    if (rest == "8.1") return "deflate in each frame";
     return rest.rfind("4.", 0) == 0 ? "JPEG" : "";
 }
 
@@ -78,10 +77,8 @@ std::vector<std::vector<std::byte>> frames_of(const DicomBytes& bytes, const Dic
         all.back().insert(all.back().end(), fragment.begin(), fragment.end());
     }
     for (auto& stream : all) {
-        if (is_code_stream) {  // some writers fill whole blocks with zeros
-            const auto is_zero = [](std::byte b) { return b == std::byte{0}; };
-            const auto end = std::find_if_not(stream.rbegin(), stream.rend(), is_zero).base();
-            if (ends_code_stream({stream.begin(), end})) stream.erase(end, stream.end());
+        while (is_code_stream && ends_code_stream(stream) && stream.back() == std::byte{0}) {
+            stream.pop_back();
         }
         if (name == plain_in_fragments && stream.size() == declared.bytes() / frames + 1) {
             stream.pop_back();  // padding to an even length
@@ -122,13 +119,17 @@ std::string check_compressed_pixels(const std::filesystem::path& file, const std
                                     const DicomBytes& bytes, const DicomPixels& pixels,
                                     const DicomExtent& declared) {
     const std::string name = compression_of(syntax);
+    if (name.empty()) {
+        fail(file, "has compressed samples, but its transfer syntax '" + syntax +
+                       "' names no compression that is read");
+    }
     if (name == "video") {
         throw Failure(quoted(file) + " is a video; export it as a series of images");
     }
-    if (name.empty() || name == "JPEG XL" || name == "deflate in each frame") {
-        throw Failure(quoted(file) + " is compressed with " +
-                      (name.empty() ? "the unknown transfer syntax '" + syntax + "'" : name) +
-                      ", which is not read; export it again without compression");
+    if (name == "JPEG XL") {
+        throw Failure(quoted(file) +
+                      " is compressed with JPEG XL, which is not read; export it again without "
+                      "compression");
     }
     if (declared.bits % 8 != 0) fail(file, "has compressed samples of single bits");
     const auto wanted = static_cast<std::size_t>(declared.frames);

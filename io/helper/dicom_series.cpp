@@ -6,7 +6,6 @@
 #include <cmath>
 #include <iterator>
 #include <map>
-#include <numeric>
 
 namespace palpate::io {
 namespace {
@@ -99,76 +98,10 @@ std::vector<DicomSeries> divided(DicomSeries series, const Name& name_of) {
     return all;
 }
 
-/// Slices at one place along the normal, apart where they lie side by side within their plane: by
-/// more than half a pixel. In order within the plane. Their numbers in the series.
-std::vector<std::vector<std::size_t>> beside_each_other(const DicomSeries& series,
-                                                        std::vector<std::size_t> slices) {
-    const DicomSlice& first = series.slices.front();
-    const double least = first.pixel ? 0.5 * first.pixel->head<2>().minCoeff() : 0.5;
-    std::vector<std::vector<std::size_t>> parts = {std::move(slices)};
-    for (const Vec3& direction : {*first.row, *first.column}) {
-        const auto at = [&](std::size_t i) { return direction.dot(*series.slices[i].position); };
-        std::vector<std::vector<std::size_t>> finer;
-        for (auto& part : parts) {
-            std::ranges::stable_sort(part, {}, at);
-            for (std::size_t k = 0; k < part.size(); ++k) {
-                if (k == 0 || at(part[k]) - at(part[k - 1]) > least) finer.emplace_back();
-                finer.back().push_back(part[k]);
-            }
-        }
-        parts = std::move(finer);
-    }
-    return parts;
-}
-
-/// Stations of a table apart: stacks that lie side by side within their planes, so that each place
-/// along the normal has slices of each of them. Time steps lie one on the other.
-std::vector<DicomSeries> in_stations(DicomSeries series) {
-    const double least = same_place_mm(series);
-    if (!has_several_at_one_place(series)) return {std::move(series)};
-    std::vector<std::size_t> order(series.slices.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto along = [&](std::size_t i) { return place_along(series.slices[i]); };
-    std::ranges::stable_sort(order, {}, along);
-    std::vector<std::vector<std::size_t>> stations;
-    for (auto begin = order.begin(); begin != order.end();) {
-        const auto end = std::find_if(
-            begin, order.end(), [&](std::size_t i) { return along(i) - along(*begin) > least; });
-        const auto parts = beside_each_other(series, {begin, end});
-        if (stations.empty()) stations.resize(parts.size());
-        if (parts.size() == 1 || parts.size() != stations.size()) return {std::move(series)};
-        for (std::size_t k = 0; k < parts.size(); ++k) {
-            stations[k].insert(stations[k].end(), parts[k].begin(), parts[k].end());
-        }
-        begin = end;
-    }
-    std::vector<DicomSeries> all;
-    for (const auto& station : stations) {
-        DicomSeries& one = all.emplace_back(DicomSeries{series.uid, {}});
-        const Vec3 place = *series.slices[station.front()].position;
-        for (const std::size_t i : station) {
-            DicomSlice& s = one.slices.emplace_back(std::move(series.slices[i]));
-            s.kind += (s.kind.empty() ? "at " : ", at ") + text_of(place.x()) + ", " +
-                      text_of(place.y()) + ", " + text_of(place.z()) + " mm";
-        }
-    }
-    return all;
-}
-
 /// Contrasts (water, fat) apart, where there are several at one place.
 std::vector<DicomSeries> by_contrast(DicomSeries series) {
     if (!has_several_at_one_place(series)) return {std::move(series)};
     return divided(std::move(series), [](const DicomSlice& s) { return s.contrast; });
-}
-
-/// Energies and kernels apart, where each place has slices of each of them.
-std::vector<DicomSeries> by_setting(DicomSeries series) {
-    if (!has_several_at_one_place(series)) return {std::move(series)};
-    const std::size_t places = counted_places(series).size();
-    auto parts = divided(series, [](const DicomSlice& s) { return s.setting; });
-    const bool are_apart = std::ranges::all_of(
-        parts, [&](const DicomSeries& one) { return counted_places(one).size() == places; });
-    return are_apart && parts.size() > 1 ? std::move(parts) : std::vector{std::move(series)};
 }
 
 /// Whether each part is a volume of its own, which overlaps with another one. Parts of one volume
@@ -267,16 +200,9 @@ std::vector<DicomSeries> series_of(std::vector<DicomSlice> slices) {
     for (auto& [key, alike] : sorted) {
         for (DicomSeries& one : alike) {
             name_echo(one);
-            std::vector<DicomSeries> parts;
-            parts.push_back(std::move(one));
-            for (const auto divide : {in_stations, by_contrast, by_setting, by_acquisition}) {
-                std::vector<DicomSeries> finer;
-                for (DicomSeries& part : parts) {
-                    std::ranges::move(divide(std::move(part)), std::back_inserter(finer));
-                }
-                parts = std::move(finer);
+            for (DicomSeries& contrast : by_contrast(std::move(one))) {
+                std::ranges::move(by_acquisition(std::move(contrast)), std::back_inserter(all));
             }
-            std::ranges::move(parts, std::back_inserter(all));
         }
     }
     return all;

@@ -22,8 +22,6 @@ enum DicomKey : std::size_t {
     trigger_time,
     cardiac_phase,
     reference_time,
-    inversion_time,
-    flip_angle,
     acquisition_time,
     content_time,
     acquisition_number,
@@ -39,7 +37,6 @@ struct DicomSlice {
     std::string patient_id, study_uid, frame_of_reference;
     std::string stack, kind;  ///< stacks of one file; magnitude, phase, echoes, segments ...
     std::string contrast;     ///< what else may tell images of one place apart: water, fat ...
-    std::string setting;      ///< of CT: energy and kernel, which may do so too
     double echo = std::numeric_limits<double>::quiet_NaN();  ///< [ms] EchoTime; NaN: not given
     ValueInfo values;
     int rows = 0, columns = 0;
@@ -47,7 +44,6 @@ struct DicomSlice {
     int instance = 0;                 ///< InstanceNumber of its file
     int order = 0;                    ///< of the places of the frames of a file
     bool is_numbered = false;         ///< `order` is its number in its stack
-    std::string zone;                 ///< +ZZXX, of times that give none
     std::vector<double> keys;         ///< by DicomKey; NaN or missing where the header does not say
     std::optional<Vec3> position;     ///< [mm, LPS] centre of the first pixel
     bool in_patient = true;           ///< or in the space of a transducer

@@ -32,25 +32,6 @@ SliceGroups groups_of(const DicomSeries& series, const Vec3& normal) {
     return groups;
 }
 
-/// Slices at one place may be shifted within their plane by little (see in_stations()).
-void note_shifted_moments(const DicomSeries& series, const SliceGroups& groups,
-                          std::vector<std::string>& notes) {
-    double most = 0;  // [mm]
-    for (const auto& group : groups) {
-        const DicomSlice& first = series.slices[group.front().slice];
-        for (const PlacedSlice& p : group) {
-            const DicomSlice& s = series.slices[p.slice];
-            if (!s.is_placed() || !first.is_placed()) return;
-            const Vec3 way = *s.position - *first.position, normal = first.normal();
-            most = std::max(most, (way - normal * normal.dot(way)).norm());
-        }
-    }
-    const auto& pixel = series.slices.front().pixel;
-    if (!pixel || most <= shift_pixels * pixel->head<2>().minCoeff()) return;
-    notes.push_back("its time steps are shifted against each other within their plane, by up to " +
-                    text_of(most) + " mm, which is less than half a pixel from one to the next");
-}
-
 void choose_time_step(const DicomSeries& series, SliceGroups groups, const Request& request,
                       Stack& stack) {
     const std::size_t steps = groups.front().size();
@@ -64,7 +45,6 @@ void choose_time_step(const DicomSeries& series, SliceGroups groups, const Reque
     const int step = checked_time_step(request, static_cast<std::int64_t>(steps));
     stack.time_steps = static_cast<int>(steps);
     for (const auto& group : groups) stack.slices.push_back(group[static_cast<std::size_t>(step)]);
-    note_shifted_moments(series, groups, stack.notes);
     stack.seconds = series.slices[stack.slices.front().slice].seconds;
 }
 
@@ -244,7 +224,7 @@ Locations locations_of(const std::vector<DicomSlice>& slices) {
             found.along.push_back(line.stableNormalized().dot(*s.position));
         }
     } else if (std::ranges::all_of(slices, [](const auto& s) { return s.location.has_value(); })) {
-        found.source = slices.front().frames > 1 ? "frames' locations" : "SliceLocation";
+        found.source = "SliceLocation";
         found.is_sided = false;
         for (const DicomSlice& s : slices) found.along.push_back(*s.location);
     }

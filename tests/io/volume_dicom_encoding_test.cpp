@@ -86,33 +86,6 @@ TEST(dicom_encoding, with_types_that_the_transfer_syntax_denies_is_read_and_said
     EXPECT_TRUE(contains(all_notes(file), "no types, and they have")) << all_notes(file);
 }
 
-/// The usual slices, their samples with the greater byte first, in a file of this syntax.
-VolumeFile read_swapped(const ScratchFolder& folder, const std::string& syntax) {
-    return read_changed(folder, [&](TestSlice slice) {
-        for (int i = 0; i < 12; ++i) {
-            const int value = slice.number * 100 + i;
-            slice.pixels.push_back(static_cast<std::uint16_t>(value << 8 | value >> 8));
-        }
-        return dicom_start(slice, syntax) + implicit_of(dicom_data_set(slice));
-    });
-}
-
-TEST(dicom_encoding, of_ge_has_big_endian_samples_behind_a_little_endian_header) {
-    const ScratchFolder folder;
-    const VolumeFile file = read_swapped(folder, "1.2.840.113619.5.2");
-    expect_usual(file);
-    EXPECT_EQ(all_notes(file), "");
-}
-
-TEST(dicom_encoding, that_is_not_known_is_noted_as_the_order_of_bytes_is_open) {
-    const ScratchFolder folder;
-    const VolumeFile file = read_changed(folder, [](const TestSlice& slice) {
-        return dicom_start(slice, "1.2.3.4.5") + dicom_data_set(slice);
-    });
-    expect_usual(file);
-    EXPECT_TRUE(contains(all_notes(file), "'1.2.3.4.5' is not known")) << all_notes(file);
-}
-
 TEST(dicom_encoding, with_a_line_end_at_the_end_is_read_and_other_rests_are_damage) {
     const ScratchFolder folder;
     const VolumeFile file =
@@ -147,8 +120,7 @@ TEST(dicom_encoding, of_more_samples_than_declared_is_read_if_the_rest_is_zeros)
 }
 
 /// A slice with its samples in fragments (RLE, PS3.5 annex G), and what stands behind these.
-std::string in_fragments(const TestSlice& slice, const std::string& behind, bool is_whole = true,
-                         const std::string& syntax = "1.2.840.10008.1.2.5") {
+std::string in_fragments(const TestSlice& slice, const std::string& behind, bool is_whole = true) {
     const std::string samples = pixel_bytes(slice);
     std::string high, low;
     for (std::size_t i = 0; i < samples.size(); i += 2) {
@@ -164,7 +136,7 @@ std::string in_fragments(const TestSlice& slice, const std::string& behind, bool
     std::string data = dicom_data_set(slice);
     data.resize(data.find(tag_bytes(0x7fe0, 0x10)));
     const std::string last = item_of(frame);
-    return dicom_start(slice, syntax) + data + tag_bytes(0x7fe0, 0x10) + "OB" +
+    return dicom_start(slice, "1.2.840.10008.1.2.5") + data + tag_bytes(0x7fe0, 0x10) + "OB" +
            std::string(2, '\0') + std::string(4, '\xff') + item_of("") +
            last.substr(0, last.size() - (is_whole ? 0 : 4)) + behind;
 }
@@ -187,19 +159,6 @@ TEST(dicom_encoding, of_fragments_without_an_end_or_with_an_empty_last_one_is_re
     bytes = bytes.insert(bytes.find(tag_bytes(0x28, 0x10)), element(0x28, 8, "IS", "2"));
     put_bytes(folder / "1.dcm", bytes);
     EXPECT_TRUE(contains(refusal(folder / "1.dcm"), "has 1 compressed images"));
-}
-
-TEST(dicom_encoding, in_a_compression_that_is_not_read_is_no_damage) {
-    const ScratchFolder folder;
-    for (const auto& [syntax, name] : {std::pair{"1.2.840.10008.1.2.8.1", "deflate in each frame"},
-                                       {"1.2.840.10008.1.2.4.110", "JPEG XL"},
-                                       {"1.2.3.4.5", "the unknown transfer syntax '1.2.3.4.5'"}}) {
-        put_bytes(folder / "1.dcm", in_fragments(usual_slice(1), "", true, syntax));
-        const std::string message = refusal(folder / "1.dcm");
-        EXPECT_TRUE(contains(message, std::string("is compressed with ") + name)) << message;
-        EXPECT_TRUE(contains(message, "export it again without compression")) << message;
-        EXPECT_FALSE(contains(message, "damaged")) << message;
-    }
 }
 
 TEST(dicom_encoding, of_colours_that_two_pixels_share_is_refused_as_colours) {

@@ -17,8 +17,7 @@ struct TestFrame {
     int moment = 1;
     int in_stack = 0;  ///< InStackPositionNumber; 0: not given
     std::string slope = "1", intercept = "0";
-    std::string component;  ///< ComplexImageComponent; empty: not given
-    int value = 0;          ///< of its first pixel; each further one is one more
+    int value = 0;  ///< of its first pixel; each further one is one more
 };
 
 std::string item(const std::string& content) {
@@ -52,7 +51,6 @@ std::string groups_of(const TestFrame& frame) {
     values.text(0x28, 0x1053, "DS", frame.slope);
     values.text(0x28, 0x1054, "LO", "US");
     type.text(0x08, 0x9007, "CS", frame.type);
-    if (!frame.component.empty()) type.text(0x08, 0x9208, "CS", frame.component);
     return sequence(0x18, 0x9226, {type.bytes()}) + sequence(0x20, 0x9111, {content.bytes()}) +
            places + sequence(0x20, 0x9116, {orientation.bytes()}) +
            sequence(0x28, 0x9145, {values.bytes()});
@@ -284,18 +282,6 @@ TEST_F(dicom_frames, of_other_kinds_are_not_mixed) {
     expect_first_pixels(read(frames, options), {3, 4});
 }
 
-TEST_F(dicom_frames, of_magnitude_and_phase_are_told_apart_by_their_component_too) {
-    std::vector<TestFrame> frames{at(0, 1), at(0, 2), at(5, 4), at(5, 3)};
-    frames[0].component = frames[3].component = "MAGNITUDE";
-    frames[1].component = frames[2].component = "PHASE";
-    EXPECT_TRUE(contains(refused(frames), "has 2 DICOM series")) << refused(frames);
-    ReadOptions options;
-    options.series = "1";
-    expect_first_pixels(read(frames, options), {1, 3});
-    options.series = "2";
-    expect_first_pixels(read(frames, options), {2, 4});
-}
-
 TEST_F(dicom_frames, have_slopes_and_intercepts_of_their_own) {
     std::vector<TestFrame> frames{at(0, 100), at(5, 100), at(10, 100)};
     frames[1].slope = "2";
@@ -397,26 +383,6 @@ TEST_F(dicom_frames, of_a_dose_lie_at_their_offsets) {
     EXPECT_EQ(file.volume.geometry().origin, Vec3(1, 2, 3));
     expect_first_pixels(file, {25, 28, 31, 34});
     EXPECT_EQ(file.volume.sample({1, 0, 0}), 25.25);
-}
-
-TEST_F(dicom_frames, without_an_orientation_lie_at_their_locations) {
-    TestSlice slice = plain_frames(4);
-    slice.position.clear();
-    DicomBytes locations, pointer;
-    locations.text(0x18, 0x2005, "DS", "6\\4\\0\\2");
-    pointer.text(0x28, 9, "AT", little(std::uint16_t{0x18}) + little(std::uint16_t{0x2005}));
-    std::string bytes = dicom_bytes(slice);
-    const auto before = [&](std::uint16_t group, std::uint16_t element, const std::string& what) {
-        bytes.insert(bytes.find(little(group) + little(element)), what);
-    };
-    before(0x20, 0xd, locations.bytes());
-    before(0x28, 0x10, pointer.bytes());
-    put_bytes(file_, bytes);
-    const VolumeFile file = read_volume(file_);
-    EXPECT_EQ(file.volume.geometry().spacing, Vec3(0.25, 0.5, 2));
-    EXPECT_FALSE(file.volume.geometry().oriented);
-    EXPECT_TRUE(contains(all_notes(file), "placed by their frames' locations")) << all_notes(file);
-    expect_first_pixels(file, {124, 136, 112, 100});
 }
 
 TEST_F(dicom_frames, counted_by_what_makes_no_volume_are_refused) {
