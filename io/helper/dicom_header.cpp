@@ -39,12 +39,13 @@ DicomSlice file_as_slice(const fs::path& file, const DicomExtent& extent, const 
     s.frames = static_cast<int>(extent.frames);
     s.instance_uid = data.text({0x0008, 0x0018});
     s.series_uid = data.text({0x0020, 0x000e});
-    s.description = data.text({0x0008, 0x103e});
+    const std::string set = data.text({0x0008, 0x0005});
+    s.description = data.words({0x0008, 0x103e}, set);
     set_kind(s, data);
     set_moment(s, data);
-    s.patient = data.text({0x0010, 0x0010});
-    s.study = data.text({0x0008, 0x1030});
-    s.patient_id = data.text({0x0010, 0x0020});
+    s.patient = data.words({0x0010, 0x0010}, set);
+    s.study = data.words({0x0008, 0x1030}, set);
+    s.patient_id = data.words({0x0010, 0x0020}, set);
     s.study_uid = data.text({0x0020, 0x000d});
     s.frame_of_reference = data.text({0x0020, 0x0052});
     set_place(s, data);

@@ -8,13 +8,14 @@
 
 #include "io/helper/dicom_moments.hpp"
 #include "io/helper/dicom_series.hpp"
+#include "io/helper/dicom_stations.hpp"
 
 namespace palpate::io {
 namespace {
 
-constexpr double even_part = 0.02;     // of the spacing
-constexpr double missing_part = 0.1;   // the same, of slices beside missing ones
-constexpr double shift_pixels = 0.05;  // more is gantry tilt
+constexpr double even_part = 0.02;    // of the spacing
+constexpr double missing_part = 0.1;  // the same, of slices beside missing ones
+
 SliceGroups groups_of(const DicomSeries& series, const Vec3& normal) {
     std::vector<PlacedSlice> placed;
     for (std::size_t i = 0; i < series.slices.size(); ++i) {
@@ -32,8 +33,25 @@ SliceGroups groups_of(const DicomSeries& series, const Vec3& normal) {
     return groups;
 }
 
+/// Slices at one place of a grid are moments only if they cover each other.
+void check_covering(const DicomSeries& series, const SliceGroups& groups) {
+    for (const auto& group : groups) {
+        const DicomSlice& first = series.slices[group.front().slice];
+        if (!first.is_placed()) return;
+        for (const PlacedSlice& p : group) {
+            const DicomSlice& other = series.slices[p.slice];
+            if (place_in_plane(other, first).cwiseAbs().maxCoeff() <= same_place_pixels) continue;
+            throw Failure("some of its slices lie side by side in one plane (" +
+                          text_of((*other.position - *first.position).norm()) +
+                          " mm apart): they are of several volumes; export each of these as a "
+                          "series of its own");
+        }
+    }
+}
+
 void choose_time_step(const DicomSeries& series, SliceGroups groups, const Request& request,
                       Stack& stack) {
+    check_covering(series, groups);
     const std::size_t steps = groups.front().size();
     for (const auto& group : groups) {
         if (group.size() == steps) continue;
@@ -155,7 +173,7 @@ void find_shear(const DicomSeries& series, const Vec3& row, const Vec3& column, 
         last_v = std::max(last_v, p.v);
         worst = std::max({worst, std::abs(p.u), std::abs(p.v)});
     }
-    if (worst <= shift_pixels) {
+    if (worst <= same_place_pixels) {
         stack.first_u = stack.first_v = 0;
         return;
     }
@@ -202,6 +220,7 @@ struct Locations {
     const char* source = nullptr;
     std::vector<double> along;  ///< empty if there are none
     bool is_sided = true;
+    bool may_repeat = false;  ///< slices at one place are moments
 };
 
 /// Their positions along the line on which these lie, or else their SliceLocation, whose sign the
@@ -224,8 +243,9 @@ Locations locations_of(const std::vector<DicomSlice>& slices) {
             found.along.push_back(line.stableNormalized().dot(*s.position));
         }
     } else if (std::ranges::all_of(slices, [](const auto& s) { return s.location.has_value(); })) {
-        found.source = "SliceLocation";
+        found.source = slices.front().location_source;
         found.is_sided = false;
+        found.may_repeat = slices.front().frames > 1;
         for (const DicomSlice& s : slices) found.along.push_back(*s.location);
     }
     return found;
@@ -258,7 +278,9 @@ void place_by_location(DicomSeries& series, std::vector<std::string>& notes) {
     std::ranges::sort(sorted);
     const double least = same_place_mm(series);
     const auto is_near = [&](double a, double b) { return b - a <= least; };
-    if (std::ranges::adjacent_find(sorted, is_near) != sorted.end() || sorted.empty()) {
+    const bool is_place = !sorted.empty() && !is_near(sorted.front(), sorted.back());
+    const bool repeats = std::ranges::adjacent_find(sorted, is_near) != sorted.end();
+    if (!is_place || (repeats && !locations.may_repeat)) {
         if (!placed || !are_only_numbered(series)) return;
         for (DicomSlice& s : series.slices) s.position.reset();
         return;
