@@ -170,8 +170,9 @@ bool is_swapped(const HeaderFields& fields, Stored stored, const DataPlace& plac
 }
 
 /// Labels of 3D Slicer's segmentations: "Segment0_LabelValue:=1", "Segment0_Name:=liver",
-/// "Segment0_Color:=0.5 0.2 0.1". Labels without a value, or with nonsense, are ignored.
+/// "Segment0_Color:=0.5 0.2 0.1". Labels with nonsense for a value are ignored.
 /// Overlapping segments are in several layers, which are the file's frames: "Segment0_Layer:=1".
+/// Versions before 4.11 name neither: each segment has a layer of its own, with the value 1.
 std::vector<LabelName> labels_of(const HeaderFields& fields, int frame) {
     constexpr int most = 4096;
     std::vector<LabelName> labels;
@@ -181,9 +182,11 @@ std::vector<LabelName> labels_of(const HeaderFields& fields, int frame) {
             return found == fields.keys.end() ? std::string() : found->second;
         };
         if (text("ID").empty() && text("LabelValue").empty()) break;
-        if (number_from<int>(trimmed(text("Layer"))).value_or(frame) != frame) continue;
+        const std::string told = text("LabelValue");
+        const int layer = told.empty() ? i : frame;  // if it is not given
+        if (number_from<int>(trimmed(text("Layer"))).value_or(layer) != frame) continue;
         LabelName label;
-        std::istringstream value(text("LabelValue"));
+        std::istringstream value(told.empty() ? "1" : told);
         if (!(value >> label.value)) continue;
         label.name = text("Name");
         std::istringstream colour(text("Color"));
