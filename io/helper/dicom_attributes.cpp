@@ -159,11 +159,21 @@ void set_place(DicomSlice& s, const std::vector<double>& p, const std::vector<do
         add_note(s.notes, "its ImageOrientationPatient has only zeros: it was ignored");
         return;
     }
+    constexpr double most = 0.01, rounding = 0.005;  // of a length, by the files' decimals
     s.row = Vec3(axes[0], axes[1], axes[2]);
     s.column = Vec3(axes[3], axes[4], axes[5]);
     for (const auto& direction : {s.row, s.column}) {
-        if (direction->norm() > 0.5 && direction->norm() < 2) continue;
-        throw Failure("its DICOM tag ImageOrientationPatient has no unit vectors; correct it");
+        const double deviation = std::abs(direction->norm() - 1);
+        if (!(deviation <= most)) {
+            throw Failure(
+                "its DICOM tag ImageOrientationPatient has no unit vectors (one of length " +
+                text_of(direction->norm()) + "); correct it");
+        }
+        if (deviation > rounding) {
+            add_note(s.notes,
+                     "its ImageOrientationPatient has vectors that are not quite of length "
+                     "1: their directions were taken");
+        }
     }
 }
 

@@ -236,8 +236,15 @@ class Walk : private DicomElements {
                 // A sequence of unknown type is always implicit (PS3.5, 6.2.2).
                 at = items(at, is_explicit && e.vr != "UN", pixels, depth);
             }
+            if (depth == 0 && pixels_.found && e.tag < float_pixels) take_late(start, at);
         }
         return at;
+    }
+
+    /// Some programs add elements at the end of the file, behind the samples.
+    void take_late(std::uint64_t start, std::uint64_t end) {
+        const auto bytes = bytes_.view(start, end - start);
+        late_.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     }
 
     /// Padding to the blocks of a medium, after the last element.
@@ -279,6 +286,12 @@ class Walk : private DicomElements {
         for (const auto& [at, type] : given_types_) {
             if (at < data_set_ || at >= pixels_.element) continue;
             extent_.header.replace(start + at - data_set_, type.size(), type);
+        }
+        if (!late_.empty()) {
+            extent_.header += late_;
+            extent_.notes.emplace_back(
+                "elements of its header stand behind its samples: they "
+                "were used");
         }
         // GDCM looks a few bytes beyond an element without a type: an element that is not used
         // follows.
@@ -356,6 +369,7 @@ class Walk : private DicomElements {
     std::uint32_t last_tag_ = 0;
     int repeated_ = 0;
     std::uint64_t data_set_ = 0;
+    std::string late_;               // elements behind the samples
     bool is_unknown_ = false;        // the transfer syntax
     std::uint64_t padding_end_ = 0;  // where the last run of one byte that was looked at ends
 };
@@ -391,10 +405,17 @@ bool has_no_image(const std::string& sop_class) {
     static const std::string storage = "1.2.840.10008.5.1.4.1.1.";
     // A DICOMDIR, a protocol, or a private class, as scanners write them beside their images.
     if (!sop_class.starts_with(storage)) return true;
-    for (const char* kind : {"9.", "11.", "66", "67", "88.", "104.", "481."}) {
-        if (sop_class.starts_with(storage + kind)) return true;
+    // Those with images. New classes are more often reports and records of all kinds.
+    static const std::set<std::string> kinds = {"1",  "2",   "3",   "4",    "5",    "6",
+                                                "7",  "12",  "13",  "14",   "20",   "30",
+                                                "40", "128", "130", "66.4", "66.7", "77.1"};
+    const std::string own = sop_class.substr(storage.size());
+    if (own == "77.1.5.3") return true;  // stereometric relationships
+    for (std::size_t end = own.size(); end != std::string::npos && end > 0;) {
+        if (kinds.contains(own.substr(0, end))) return false;
+        end = own.rfind('.', end - 1);
     }
-    return false;
+    return true;
 }
 
 }  // namespace palpate::io

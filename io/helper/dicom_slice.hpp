@@ -68,6 +68,9 @@ struct DicomSlice {
     double between = 0;    ///< [mm] SpacingBetweenSlices, negative against the normal; 0: not given
     double thickness = 0;  ///< [mm] between slices or of one; 0 if not given
     double slope = 1, intercept = 0;  ///< of the values [units]
+    int bits = 16;                    ///< allocated for a stored number
+    double least = 0, most = 65535;   ///< of these numbers
+    bool is_real = false;             ///< or floating-point ones
     bool has_rescale = false;         ///< it gives both of these, or a table
     bool has_colours = false;
     bool is_moment = false;  ///< the frames of its file are one place at several times

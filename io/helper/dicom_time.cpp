@@ -9,7 +9,7 @@
 namespace palpate::io {
 namespace {
 
-bool is_digit(char c) {
+bool is_figure(char c) {
     return c >= '0' && c <= '9';
 }
 
@@ -18,7 +18,7 @@ std::optional<int> digits(const std::string& text, std::size_t at, std::size_t c
     if (at + count > text.size()) return std::nullopt;
     int value = 0;
     for (std::size_t i = at; i < at + count; ++i) {
-        if (!is_digit(text[i])) return std::nullopt;
+        if (!is_figure(text[i])) return std::nullopt;
         value = 10 * value + (text[i] - '0');
     }
     return value;
@@ -41,14 +41,14 @@ std::optional<double> day_of(std::string date) {
 std::optional<double> time_of(std::string time) {
     std::erase(time, ':');
     std::ranges::replace(time, ',', '.');
-    const auto end = std::ranges::find_if_not(time, is_digit);
+    const auto end = std::ranges::find_if_not(time, is_figure);
     std::string whole(time.begin(), end);
     if (whole.size() % 2 == 1) whole.insert(0, 1, '0');
     const auto hours = digits(whole, 0, 2);
     if (!hours) return std::nullopt;
     double fraction = 0, part = 0.1;
     if (whole.size() == 6 && end != time.end() && *end == '.') {
-        for (auto at = end + 1; at != time.end() && is_digit(*at); ++at, part /= 10) {
+        for (auto at = end + 1; at != time.end() && is_figure(*at); ++at, part /= 10) {
             fraction += part * (*at - '0');
         }
     }

@@ -46,12 +46,6 @@ constexpr TraitTag tags[] = {
     {"filter", {0x0018, 0x1160}, none, none, Written::word},
     {"reconstruction", {0x0054, 0x1103}, none, none, Written::word},
     {"corrections", {0x0028, 0x0051}, none, none, Written::word},
-    {"slice thickness",
-     {0x0018, 0x0050},
-     {0x0028, 0x9110},
-     {0x0018, 0x0050},
-     Written::number,
-     " mm"},
     {"units", {0x0028, 0x1054}, {0x0028, 0x9145}, {0x0028, 0x1054}, Written::word},
     {"protocol", {0x0018, 0x1030}, none, none, Written::word},
     // Diffusion has many directions, which are steps of one series.

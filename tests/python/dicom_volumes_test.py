@@ -2,6 +2,7 @@
 their moments, which clocks, vectors and character sets of the files tell."""
 
 import itertools
+import struct
 
 import numpy
 import palpate
@@ -186,3 +187,133 @@ def test_bytes_that_no_set_explains_are_shown_as_bytes(tmp_path):
     with pytest.raises(palpate.SeriesChoice) as caught:
         palpate.load(folder)
     assert caught.value.series[0]["description"].startswith("Sch\\xe4del")
+
+
+# Time steps of one series, and what else a reader has to take or refuse ------------------------------
+
+def dynamic(folder, arrays, change=lambda t, z: {}):
+    slices = []
+    for t, array in enumerate(arrays):
+        slices += stack(array, change=lambda z: {"TemporalPositionIdentifier": t + 1, **change(t, z)})
+    return numbered(folder, slices)
+
+
+SCALES = {"fraction": (0.37, 0, "float32"), "below": (1, -5, "float32"), "whole": (2, 0, "float32"), "stored": (1, 0, "uint16")}
+
+
+@pytest.mark.parametrize("scale", SCALES)
+def test_all_time_steps_have_one_type(tmp_path, scale):
+    slope, intercept, dtype = SCALES[scale]
+    arrays = [ramp("u2") * 0, ramp("u2"), ramp("u2") + 40000]
+    folder = dynamic(tmp_path / "a", arrays, lambda t, z: {"RescaleSlope": slope, "RescaleIntercept": intercept})
+    for t, array in enumerate(arrays):
+        volume = palpate.load(folder, frame=t).volume
+        assert volume.array.dtype == dtype and numpy.allclose(volume.array, array.astype("f8") * slope + intercept)
+
+
+def test_samples_of_fewer_bits_stay_16_bits_in_all_time_steps(tmp_path):
+    change = lambda t, z: {"BitsStored": 12, "HighBit": 11, "RescaleIntercept": -1024}
+    folder = dynamic(tmp_path / "a", [ramp("u2"), ramp("u2") + 3900], change)
+    assert [palpate.load(folder, frame=t).volume.array.dtype for t in (0, 1)] == ["int16", "int16"]
+
+
+@pytest.mark.parametrize("shift", ((0, 0, 1e-5), (0.01, 0, 0), (0, 0.02, -0.005)))
+def test_all_time_steps_lie_on_one_grid(tmp_path, shift):
+    place = lambda t, z: {"ImagePositionPatient": [1 + shift[0] * t, 2 + shift[1] * t, 3 + 2 * z + shift[2] * t * (1 + (z == 4))]}
+    folder = dynamic(tmp_path / "a", [ramp("i2"), ramp("i2") + 1000], place)
+    first, second = (palpate.load(folder, frame=t).volume.geometry for t in (0, 1))
+    assert tuple(first.origin) == tuple(second.origin) and tuple(first.spacing) == tuple(second.spacing)
+    expect_steps(folder, 2)
+
+
+def test_each_direction_of_diffusion_is_one_time_step(tmp_path):
+    directions = numpy.array([[1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
+    which = [numpy.roll(range(3), z) for z in range(PLACES)]
+    planes = [ramp("u2")[z] + 1000 * int(which[z][k]) for z in range(PLACES) for k in range(3)]
+    group = lambda i: {"MRDiffusionSequence": items(
+        DiffusionBValue=1000.0, DiffusionGradientDirectionSequence=items(DiffusionGradientOrientation=list(directions[which[i // 3][i % 3]])))}
+    expect_steps(enhanced(tmp_path / "a", planes, [z for z in range(PLACES) for _ in range(3)], group), 3)
+
+
+@pytest.mark.parametrize("axes", ([1.5, 0, 0, 0, 1.5, 0], [1, 0, 0, 0, 0.98, 0], [0.9, 0.1, 0, 0, 1, 0]))
+def test_directions_of_another_length_are_refused(tmp_path, axes):
+    refused(save(tmp_path / "a", stack(ramp("i2"), change=lambda i: {"ImageOrientationPatient": axes})), "no unit vectors")
+
+
+def test_directions_nearly_of_length_1_are_noted(tmp_path):
+    noted(save(tmp_path / "a", stack(ramp("i2"), change=lambda i: {"ImageOrientationPatient": [1.008, 0, 0, 0, 1, 0]})), "not quite of length 1")
+
+
+@pytest.mark.parametrize("kind", ("200.2", "68.1", "77.1.5.3", "78.1", "90.1", "131", "9.1.1", "99999", "66.5"))
+def test_objects_without_an_image_are_passed_over(tmp_path, kind):
+    folder = save(tmp_path / "a", stack(ramp("i2")))
+    image = ("ImagePositionPatient", "ImageOrientationPatient", "PixelSpacing", "Rows", "Columns", "PixelData", "BitsAllocated")
+    record = slice_of(ramp("i2")[0], 99, (0, 0, 0), SOPClassUID=f"1.2.840.10008.5.1.4.1.1.{kind}", **dict.fromkeys(image))
+    (save(tmp_path / "b", [record]) / "099.dcm").rename(folder / "record.dcm")
+    assert numpy.array_equal(palpate.load(folder).volume.array, ramp("i2"))
+    record.SOPClassUID = "1.2.840.10008.5.1.4.1.1.66.4"
+    (save(tmp_path / "c", [record]) / "099.dcm").rename(folder / "record.dcm")
+    refused(folder, "no size of its image")
+
+
+def test_shifts_that_are_no_tilt_are_not_called_one(tmp_path):
+    for name, shift in (("a", [0, 0, 1, 0, 0]), ("b", [0, 0, 0, 5, 5])):
+        slices = stack(ramp("i2"), change=lambda i: {"ImagePositionPatient": [1 + shift[i] / 8, 2, 3 + 2 * i]})
+        noted(save(tmp_path / name, slices), "no gantry tilt")
+
+
+@pytest.mark.parametrize("implicit", (True, False))
+def test_elements_behind_the_samples_are_used(tmp_path, implicit):
+    first = slice_of(ramp("i2")[0], 1, (1, 2, 3), RescaleSlope=None, RescaleIntercept=None, ImagePositionPatient=None)
+    path = save(tmp_path / "a", [first], "implicit" if implicit else "explicit") / "001.dcm"
+    for group, number, vr, value in ((0x20, 0x32, b"DS", b"4\\5\\6 "), (0x28, 0x1052, b"DS", b"-7"), (0x28, 0x1053, b"DS", b"3 ")):
+        tag = group.to_bytes(2, "little") + number.to_bytes(2, "little")
+        size = len(value).to_bytes(4, "little") if implicit else vr + len(value).to_bytes(2, "little")
+        path.write_bytes(path.read_bytes() + tag + size + value)
+    volume = noted(path, "stand behind its samples")
+    assert numpy.array_equal(volume.array[0], ramp("i2")[0] * 3 - 7) and tuple(volume.geometry.origin) == (4, 5, 6)
+
+
+NUMBERS = {"none": lambda i: None, "one": lambda i: 1}
+
+
+@pytest.mark.parametrize("numbers", NUMBERS)
+@pytest.mark.parametrize("names", ("{}.dcm", "slice {} of 5.dcm", "{}"))
+def test_slices_without_a_place_or_a_number_are_counted_by_their_names(tmp_path, numbers, names):
+    planes = numpy.concatenate([ramp("i2"), ramp("i2") + 1000, ramp("i2") + 2000])
+    slices = stack(planes, change=lambda i: {"ImagePositionPatient": None, "ImageOrientationPatient": None})
+    folder = save(tmp_path / "a", slices)
+    for i, path in enumerate(sorted(folder.iterdir())):
+        data = path.read_bytes()
+        number = f"{i + 1}".encode().ljust(2)
+        own = b"\x20\x00\x13\x00IS\x02\x00"
+        path.write_bytes(data.replace(own + number, own + (b"1 " if numbers == "one" else b"  ")))
+        path.rename(folder / names.format(i + 1))
+    assert numpy.array_equal(noted(folder, "numbers in the names of their files").array, planes)
+    for i, path in enumerate(sorted(folder.iterdir())):
+        path.rename(folder / ("x" * (i + 1) + ".dcm"))
+    refused(folder, "nor in which order")
+
+
+def element(group, number, vr, value):
+    value += b" " * (len(value) % 2)
+    size = struct.pack("<HI", 0, len(value)) if vr in ("SQ", "OW") else struct.pack("<H", len(value))
+    return struct.pack("<HH", group, number) + vr.encode() + size + value
+
+
+def test_many_frames_of_few_bytes_are_read(tmp_path):
+    places, times = 60, 800
+    path = enhanced(tmp_path / "a", [numpy.zeros((2, 2), "u2")] * 2, range(2), lambda i: {}) / "001.dcm"
+    head = path.read_bytes()
+    head = head[:head.index(b"\x00\x52\x30\x92SQ")].replace(element(0x28, 8, "IS", b"2"), element(0x28, 8, "IS", b"%d" % (places * times)))
+    groups = []
+    for t, z in itertools.product(range(times), range(places)):
+        content = b"".join(element(0x20, number, "UL", struct.pack("<I", value)) for number, value in ((0x9057, z + 1), (0x9128, t + 1)))
+        group = element(0x20, 0x9111, "SQ", struct.pack("<HHI", 0xFFFE, 0xE000, len(content)) + content)
+        place = element(0x20, 0x32, "DS", b"1\\2\\%d" % (3 + 2 * z))
+        group += element(0x20, 0x9113, "SQ", struct.pack("<HHI", 0xFFFE, 0xE000, len(place)) + place)
+        groups.append(struct.pack("<HHI", 0xFFFE, 0xE000, len(group)) + group)
+    samples = numpy.arange(places * times, dtype="<u2").repeat(4)
+    path.write_bytes(head + element(0x5200, 0x9230, "SQ", b"".join(groups)) + element(0x7FE0, 0x10, "OW", samples.tobytes()))
+    loaded = palpate.load(path, frame=7)
+    assert loaded.time_steps == times and numpy.array_equal(loaded.volume.array[:, 0, 0], numpy.arange(places) + 7 * places)
