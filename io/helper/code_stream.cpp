@@ -69,6 +69,56 @@ std::optional<CodeStreamSize> jpeg_2000_size(const Numbers& numbers, std::size_t
                           components, static_cast<int>(numbers.at(siz + 38, 1) & 0x7f) + 1};
 }
 
+/// Up to EOI. Within the samples, a byte of 255 is followed by one below 128.
+std::optional<std::size_t> jpeg_length(const Numbers& numbers) {
+    for (std::size_t at = 2; at + 2 <= numbers.size();) {
+        const std::uint32_t marker = numbers.at(at + 1, 1);
+        if (numbers.at(at, 1) != 0xff || marker == 0xff) {
+            ++at;
+            continue;
+        }
+        at += 2;
+        if (marker == 0xd9) return at;
+        const bool is_alone = marker < 0xc0 || (marker >= 0xd0 && marker <= 0xd8);
+        if (!is_alone) at += numbers.at(at, 2);
+    }
+    return std::nullopt;
+}
+
+/// Where the markers of JPEG 2000 begin, also inside a JP2 file.
+std::optional<std::size_t> jpeg_2000_start(const Numbers& numbers) {
+    constexpr std::size_t boxes_before_stream = 4096;
+    const bool jp2 = numbers.at(4, 4) == 0x6a502020;  // "jP  "
+    for (std::size_t at = 0; at < (jp2 ? boxes_before_stream : 1); ++at) {
+        if (numbers.at(at, 4) == 0xff4fff51) return at;
+    }
+    return std::nullopt;
+}
+
+/// Up to EOC, by the lengths of the tiles; nothing if one of them has none, as the last may.
+std::optional<std::size_t> jpeg_2000_length(const Numbers& numbers) {
+    constexpr std::uint32_t tile = 0xff90, end = 0xffd9, least = 12;
+    const auto start = jpeg_2000_start(numbers);
+    for (std::size_t at = start.value_or(numbers.size()) + 2; at + 2 <= numbers.size();) {
+        const std::uint32_t marker = numbers.at(at, 2);
+        if (marker == end) return at + 2;
+        const std::uint32_t length = marker == tile ? numbers.at(at + 6, 4) : numbers.at(at + 2, 2);
+        if (marker >> 8 != 0xff || (marker == tile && length < least)) return std::nullopt;
+        at += length + (marker == tile ? 0 : 2);
+    }
+    return std::nullopt;
+}
+
+/// Up to an end marker that nothing but padding follows.
+std::optional<std::size_t> unpadded_length(std::span<const std::byte> stream) {
+    std::size_t end = stream.size();
+    const auto is_padding = [](std::byte b) { return b == std::byte{0} || b == std::byte{0xff}; };
+    while (end > 2 && is_padding(stream[end - 1])) --end;
+    const bool ends =
+        end >= 4 && stream[end - 2] == std::byte{0xff} && stream[end - 1] == std::byte{0xd9};
+    return ends ? std::optional(end) : std::nullopt;
+}
+
 /// Bytes that a PackBits segment unpacks to; stops above `at_most`.
 std::uint64_t unpacked_size(std::span<const std::byte> segment, std::uint64_t at_most) {
     std::uint64_t size = 0;
@@ -97,19 +147,15 @@ bool begins_code_stream(std::span<const std::byte> bytes) {
 std::optional<CodeStreamSize> code_stream_size(std::span<const std::byte> stream) {
     const Numbers numbers(stream);
     if (numbers.at(0, 3) == 0xffd8ff) return jpeg_size(numbers);
-    constexpr std::size_t boxes_before_stream = 4096;
-    const bool jp2 = numbers.at(4, 4) == 0x6a502020;  // "jP  "
-    for (std::size_t at = 0; at < (jp2 ? boxes_before_stream : 1); ++at) {
-        if (numbers.at(at, 4) == 0xff4fff51) return jpeg_2000_size(numbers, at + 4);
-    }
+    if (const auto start = jpeg_2000_start(numbers)) return jpeg_2000_size(numbers, *start + 4);
     return std::nullopt;
 }
 
-bool ends_code_stream(std::span<const std::byte> stream) {
-    std::size_t end = stream.size();
-    const auto is_padding = [](std::byte b) { return b == std::byte{0} || b == std::byte{0xff}; };
-    while (end > 2 && is_padding(stream[end - 1]) && stream.size() - end < segment_padding) --end;
-    return end >= 4 && stream[end - 2] == std::byte{0xff} && stream[end - 1] == std::byte{0xd9};
+std::optional<std::size_t> code_stream_length(std::span<const std::byte> stream) {
+    const Numbers numbers(stream);
+    const auto length =
+        numbers.at(0, 3) == 0xffd8ff ? jpeg_length(numbers) : jpeg_2000_length(numbers);
+    return length ? length : unpadded_length(stream);
 }
 
 bool is_rle_frame(std::span<const std::byte> frame, std::size_t segments, std::uint64_t bytes) {

@@ -23,8 +23,8 @@ bool begins_code_stream(std::span<const std::byte> bytes);
 /// of JPEG 2000 (T.800 A.5.1; also inside a JP2 file); nothing if there is none.
 std::optional<CodeStreamSize> code_stream_size(std::span<const std::byte> stream);
 
-/// Whether it ends with the marker for that (EOI, EOC), but for padding with zeros.
-bool ends_code_stream(std::span<const std::byte> stream);
+/// Bytes up to its end marker (EOI, EOC) and with it, whatever follows; nothing if there is none.
+std::optional<std::size_t> code_stream_length(std::span<const std::byte> stream);
 
 /// Whether a frame in DICOM's RLE (PS3.5 annex G) has this many segments of this many bytes each:
 /// no less, and no more but for padding.

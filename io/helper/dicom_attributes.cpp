@@ -11,6 +11,7 @@
 #include <sstream>
 #include <utility>
 
+#include "io/helper/dicom_time.hpp"
 #include "io/helper/headers.hpp"
 
 namespace palpate::io {
@@ -130,39 +131,18 @@ void set_padding(DicomSlice& s, const DicomGroup& data) {
 constexpr std::size_t most_dimensions =
     64;  // of a frame; keys are compared in time that rises with them
 
-/// [s] of a date (YYYYMMDD) and a time (HHMMSS.FFFFFF), or of both in one (DT); NaN if a part is
-/// missing. The date counts from any day.
-double moment_of(const std::string& date, std::string time) {
-    std::erase(time, ':');  // of old files
-    const auto digits = [](const std::string& text, std::size_t at, std::size_t count) {
-        int value = -1;
-        const std::string part = at < text.size() ? text.substr(at, count) : "";
-        std::from_chars(part.data(), part.data() + part.size(), value);
-        return value;
-    };
-    const int hours = digits(time, 0, 2), minutes = std::max(digits(time, 2, 2), 0);
-    const int year = digits(date, 0, 4), month = std::max(digits(date, 4, 2), 1);
-    if (hours < 0) return std::numeric_limits<double>::quiet_NaN();
-    const int day = std::max(digits(date, 6, 2), 1);
-    const double fraction =
-        digits(time, 7, 6) < 0 ? 0 : std::strtod(("0." + time.substr(7, 6)).c_str(), nullptr);
-    const double seconds = std::max(digits(time, 4, 2), 0) + fraction;
-    // Months of 31 days keep the order, which is all that counts.
-    return ((std::max(year, 0) * 12.0 + month) * 31 + day) * 86400 + hours * 3600 + minutes * 60 +
-           seconds;
-}
-
-double moment_of(const std::string& both) {
-    return both.size() < 10 ? std::numeric_limits<double>::quiet_NaN()
-                            : moment_of(both.substr(0, 8), both.substr(8));
-}
-
 void add_kind(DicomSlice& s, const std::string& kind) {
     s.kind += (s.kind.empty() || kind.empty() ? "" : ", ") + kind;
 }
 
 void add_kind(DicomSlice& s, const char* name, double value, const char* unit) {
     if (std::isfinite(value)) add_kind(s, name + text_of(value) + unit);
+}
+
+/// Magnitude, phase, real or imaginary part. The files of some scanners say it nowhere else.
+void add_component(DicomSlice& s, const DicomGroup& data) {
+    const std::string component = lower(data.text({0x0008, 0x9208}));
+    if (component != "mixed") add_kind(s, component);
 }
 
 }  // namespace
@@ -179,11 +159,21 @@ void set_place(DicomSlice& s, const std::vector<double>& p, const std::vector<do
         add_note(s.notes, "its ImageOrientationPatient has only zeros: it was ignored");
         return;
     }
+    constexpr double most = 0.01, rounding = 0.005;  // of a length, by the files' decimals
     s.row = Vec3(axes[0], axes[1], axes[2]);
     s.column = Vec3(axes[3], axes[4], axes[5]);
     for (const auto& direction : {s.row, s.column}) {
-        if (direction->norm() > 0.5 && direction->norm() < 2) continue;
-        throw Failure("its DICOM tag ImageOrientationPatient has no unit vectors; correct it");
+        const double deviation = std::abs(direction->norm() - 1);
+        if (!(deviation <= most)) {
+            throw Failure(
+                "its DICOM tag ImageOrientationPatient has no unit vectors (one of length " +
+                text_of(direction->norm()) + "); correct it");
+        }
+        if (deviation > rounding) {
+            add_note(s.notes,
+                     "its ImageOrientationPatient has vectors that are not quite of length "
+                     "1: their directions were taken");
+        }
     }
 }
 
@@ -276,9 +266,10 @@ void finish_values(DicomSlice& s, const DicomGroup& data) {
 
 Segments segments_in(const DicomGroup& data) {
     Segments names;
+    const std::string set = data.text({0x0008, 0x0005});
     for (const DicomGroup& segment : data.items({0x0062, 0x0002})) {
         const auto number = segment.binary<std::uint16_t>({0x0062, 0x0004});
-        if (!number.empty()) names[number[0]] = segment.text({0x0062, 0x0005});
+        if (!number.empty()) names[number[0]] = segment.words({0x0062, 0x0005}, set);
     }
     return names;
 }
@@ -294,7 +285,9 @@ void set_kind(DicomSlice& s, const DicomGroup& data) {
         if (i > 2) s.contrast += (s.contrast.empty() ? "" : " ") + value;
     }
     if (const auto echo = data.numbers({0x0018, 0x0081}); !echo.empty()) s.echo = echo[0];
+    add_component(s, data);
     add_kind(s, "b-value ", data.real({0x0018, 0x9087}), " s/mm2");
+    set_traits(s, data);
 }
 
 /// Properties that order the images of one place in one series.
@@ -311,12 +304,15 @@ void set_moment(DicomSlice& s, const DicomGroup& data) {
     s.keys[temporal_position] = data.optional_number({0x0020, 0x0100});
     s.keys[trigger_time] = data.optional_number({0x0018, 0x1060});
     s.keys[reference_time] = data.optional_number({0x0054, 0x1300});
-    s.keys[acquisition_time] = moment_of(data.text({0x0008, 0x002a}));
+    s.clock_offset = data.text({0x0008, 0x0201});
+    const auto moment = [&](DicomTag date, DicomTag time) {
+        return moment_of(data.text(date), data.text(time), s.clock_offset);
+    };
+    s.keys[acquisition_time] = moment_of(data.text({0x0008, 0x002a}), s.clock_offset);
     if (std::isnan(s.keys[acquisition_time])) {
-        s.keys[acquisition_time] =
-            moment_of(data.text({0x0008, 0x0022}), data.text({0x0008, 0x0032}));
+        s.keys[acquisition_time] = moment({0x0008, 0x0022}, {0x0008, 0x0032});
     }
-    s.keys[content_time] = moment_of(data.text({0x0008, 0x0023}), data.text({0x0008, 0x0033}));
+    s.keys[content_time] = moment({0x0008, 0x0023}, {0x0008, 0x0033});
     s.keys[acquisition_number] = number_of({0x0020, 0x0012});
     s.keys[frame_number] = number;
 }
@@ -333,6 +329,8 @@ void set_kind(DicomSlice& s, const FunctionalGroups& groups, const Segments& seg
                                 {0x0018, 0x9806}}) {
         groups.with(type, [&](const DicomGroup& g) { add_kind(s, g.text({0x0008, 0x9007})); });
     }
+    groups.with({0x0018, 0x9226}, [&](const DicomGroup& g) { add_component(s, g); });
+    set_traits(s, groups);
     groups.with({0x0018, 0x9114}, [&](const DicomGroup& g) { s.echo = g.real({0x0018, 0x9082}); });
     groups.with({0x0018, 0x9117}, [&](const DicomGroup& g) {
         add_kind(s, "b-value ", g.real({0x0018, 0x9087}), " s/mm2");
@@ -355,8 +353,8 @@ void set_moment(DicomSlice& s, const FunctionalGroups& groups) {
         if (s.is_numbered) s.order = static_cast<int>(place[0]);
         const auto moment = g.binary<std::uint32_t>({0x0020, 0x9128});
         if (!moment.empty()) s.keys[temporal_position] = moment[0];
-        s.keys[reference_time] = moment_of(g.text({0x0018, 0x9151}));
-        s.keys[acquisition_time] = moment_of(g.text({0x0018, 0x9074}));
+        s.keys[reference_time] = moment_of(g.text({0x0018, 0x9151}), s.clock_offset);
+        s.keys[acquisition_time] = moment_of(g.text({0x0018, 0x9074}), s.clock_offset);
         const auto dimensions = g.binary<std::uint32_t>({0x0020, 0x9157});
         if (dimensions.size() > most_dimensions) {
             throw Failure("has too many dimensions (DimensionIndexValues); export it again");

@@ -58,6 +58,10 @@ Segments segments_in(const DicomGroup& data);
 void set_kind(DicomSlice& slice, const DicomGroup& data);
 void set_moment(DicomSlice& slice, const DicomGroup& data);
 
+/// Properties by which images of one place may differ, of a file and of a frame.
+void set_traits(DicomSlice& slice, const DicomGroup& data);
+void set_traits(DicomSlice& slice, const FunctionalGroups& groups);
+
 /// Of a frame, from its functional groups.
 void set_kind(DicomSlice& slice, const FunctionalGroups& groups, const Segments& segments);
 void set_moment(DicomSlice& slice, const FunctionalGroups& groups);

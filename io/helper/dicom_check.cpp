@@ -24,6 +24,8 @@ constexpr int most_repeated = 10000;
 const char* const implicit_syntax = "1.2.840.10008.1.2";
 const char* const explicit_syntax = "1.2.840.10008.1.2.1";
 const char* const big_endian_syntax = "1.2.840.10008.1.2.2";
+/// GE's own: elements are implicit and little-endian, samples are big-endian.
+const char* const ge_syntax = "1.2.840.113619.5.2";
 const char* const deflated_syntax = "1.2.840.10008.1.2.1.99";
 const char* const jpeg_2000_syntax = "1.2.840.10008.1.2.4.90";
 
@@ -65,7 +67,7 @@ class Walk : private DicomElements {
             const bool is_explicit = has_types(syntax);
             walk(data_set_, UINT64_MAX, is_explicit, 0);
             if (extent_.sop_class.empty()) note_no_class();
-            if (extent_.rows > 0 && extent_.columns > 0) check_pixels(syntax);
+            if (extent_.rows > 0 && extent_.columns > 0) check_pixels();
             take_header(is_explicit);
         } catch (const DamagedStream& e) {
             fail(std::string("is damaged (") + e.what() + ")");
@@ -76,8 +78,13 @@ class Walk : private DicomElements {
     /// After whole_file().
     void read_frames(const std::vector<int>& wanted, const UseFrame& use) {
         if (!pixels_.plain) {
-            const auto streams = frames_of(bytes_, pixels_, extent_);
-            for (const int frame : wanted) use(frame, streams.at(static_cast<std::size_t>(frame)));
+            const auto streams = streams_of(bytes_, pixels_, extent_).frames;
+            const auto count = static_cast<std::uint64_t>(extent_.rows * extent_.columns);
+            for (const int frame : wanted) {
+                const auto bytes =
+                    frame_of(file_, streams.at(static_cast<std::size_t>(frame)), extent_);
+                use(frame, extent_.bits == 1 ? one_byte_each(bytes, 0, count) : bytes);
+            }
             return;
         }
         const auto samples = static_cast<std::uint64_t>(extent_.rows * extent_.columns);
@@ -121,11 +128,14 @@ class Walk : private DicomElements {
                                                                                 : implicit_syntax;
     }
 
-    /// Whether elements have types. Some writers name the syntax without types and write them.
+    /// Whether elements have types. Some writers name the syntax without types and write them. The
+    /// first element tells it for a syntax that is not known.
     bool has_types(const std::string& syntax) {
-        if (syntax != implicit_syntax || !bytes_.reaches(data_set_ + 8)) return true;
+        const bool is_told = syntax != implicit_syntax && syntax != ge_syntax && !is_unknown_;
+        if (is_told || !bytes_.reaches(data_set_ + 8)) return true;
         const std::string first = {number<char>(data_set_ + 4), number<char>(data_set_ + 5)};
         if (!is_type(first)) return false;
+        if (is_unknown_) return true;
         extent_.notes.emplace_back(
             "its transfer syntax says that elements have no types, and they have: they were read "
             "as "
@@ -137,6 +147,7 @@ class Walk : private DicomElements {
 
     void begin_data_set(const std::string& syntax) {
         if (syntax == big_endian_syntax) bytes_.set_swapped();
+        is_unknown_ = !is_known_syntax(syntax) && syntax != ge_syntax;
         extent_.syntax = is_high_throughput(syntax) ? jpeg_2000_syntax : syntax;
         if (syntax != deflated_syntax) return;
         bytes_.deflated_from(data_set_, most_beside_pixels);
@@ -225,8 +236,15 @@ class Walk : private DicomElements {
                 // A sequence of unknown type is always implicit (PS3.5, 6.2.2).
                 at = items(at, is_explicit && e.vr != "UN", pixels, depth);
             }
+            if (depth == 0 && pixels_.found && e.tag < float_pixels) take_late(start, at);
         }
         return at;
+    }
+
+    /// Some programs add elements at the end of the file, behind the samples.
+    void take_late(std::uint64_t start, std::uint64_t end) {
+        const auto bytes = bytes_.view(start, end - start);
+        late_.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     }
 
     /// Padding to the blocks of a medium, after the last element.
@@ -269,6 +287,12 @@ class Walk : private DicomElements {
             if (at < data_set_ || at >= pixels_.element) continue;
             extent_.header.replace(start + at - data_set_, type.size(), type);
         }
+        if (!late_.empty()) {
+            extent_.header += late_;
+            extent_.notes.emplace_back(
+                "elements of its header stand behind its samples: they "
+                "were used");
+        }
         // GDCM looks a few bytes beyond an element without a type: an element that is not used
         // follows.
         constexpr std::size_t ahead = 64;
@@ -286,7 +310,8 @@ class Walk : private DicomElements {
         pixels_.at = at;
         extent_.is_real = is_real;
         // Bytes have no order, but some writers call words so; other readers take them as words.
-        if (bytes_.swapped() && (e.vr != "OB" || extent_.bits > 8)) {
+        const bool is_swapped_word = extent_.syntax == ge_syntax && extent_.bits > 8;
+        if (is_swapped_word || (bytes_.swapped() && (e.vr != "OB" || extent_.bits > 8))) {
             extent_.swapped_bytes =
                 static_cast<std::size_t>(std::max<std::int64_t>(2, extent_.bits / 8));
         }
@@ -322,15 +347,20 @@ class Walk : private DicomElements {
         }
     }
 
-    void check_pixels(const std::string& syntax) {
+    void check_pixels() {
         if (!pixels_.found) return;
         if (pixels_.plain) {
+            if (is_unknown_) {
+                extent_.notes.push_back("its transfer syntax '" + extent_.syntax +
+                                        "' is not known: its samples were taken as little-endian "
+                                        "and not compressed");
+            }
             if (const auto note = check_plain_pixels(file_, bytes_, pixels_, extent_)) {
                 extent_.notes.push_back(*note);
             }
             return;
         }
-        extent_.compression = check_compressed_pixels(file_, syntax, bytes_, pixels_, extent_);
+        check_compressed_pixels(file_, bytes_, pixels_, extent_);
     }
 
     DicomExtent extent_;
@@ -339,6 +369,8 @@ class Walk : private DicomElements {
     std::uint32_t last_tag_ = 0;
     int repeated_ = 0;
     std::uint64_t data_set_ = 0;
+    std::string late_;               // elements behind the samples
+    bool is_unknown_ = false;        // the transfer syntax
     std::uint64_t padding_end_ = 0;  // where the last run of one byte that was looked at ends
 };
 
@@ -373,10 +405,17 @@ bool has_no_image(const std::string& sop_class) {
     static const std::string storage = "1.2.840.10008.5.1.4.1.1.";
     // A DICOMDIR, a protocol, or a private class, as scanners write them beside their images.
     if (!sop_class.starts_with(storage)) return true;
-    for (const char* kind : {"9.", "11.", "66", "67", "88.", "104.", "481."}) {
-        if (sop_class.starts_with(storage + kind)) return true;
+    // Those with images. New classes are more often reports and records of all kinds.
+    static const std::set<std::string> kinds = {"1",  "2",   "3",   "4",    "5",    "6",
+                                                "7",  "12",  "13",  "14",   "20",   "30",
+                                                "40", "128", "130", "66.4", "66.7", "77.1"};
+    const std::string own = sop_class.substr(storage.size());
+    if (own == "77.1.5.3") return true;  // stereometric relationships
+    for (std::size_t end = own.size(); end != std::string::npos && end > 0;) {
+        if (kinds.contains(own.substr(0, end))) return false;
+        end = own.rfind('.', end - 1);
     }
-    return false;
+    return true;
 }
 
 }  // namespace palpate::io

@@ -168,7 +168,7 @@ std::vector<DicomSlice> enhanced_frames(const DicomSlice& file, const DicomGroup
 }
 
 /// The quantity by which FrameIncrementPointer counts the frames.
-enum class Counted { by_nothing, by_time, by_slice, by_offset, by_location, otherwise };
+enum class Counted { by_nothing, by_time, by_slice, by_offset, by_location, by_page, otherwise };
 
 constexpr DicomTag grid_offsets{0x3004, 0x000c}, frame_locations{0x0018, 0x2005},
     pages{0x0018, 0x2001};
@@ -184,6 +184,8 @@ Counted counted(const DicomGroup& data, double between) {
         const bool is_stack = !is_film(data) && between != 0;
         return has_time(data) && !is_stack ? Counted::by_time
                : data.has(grid_offsets)    ? Counted::by_offset
+               : data.has(frame_locations) ? Counted::by_location
+               : data.has(pages)           ? Counted::by_page
                                            : Counted::by_nothing;
     }
     if (pointers.size() > 1) return Counted::otherwise;
@@ -191,7 +193,7 @@ Counted counted(const DicomGroup& data, double between) {
     if (pointers[0] == DicomTag{0x0054, 0x0080}) return Counted::by_slice;
     if (pointers[0] == grid_offsets) return Counted::by_offset;
     if (pointers[0] == frame_locations) return Counted::by_location;
-    if (pointers[0] == pages) return Counted::by_nothing;
+    if (pointers[0] == pages) return Counted::by_page;
     return Counted::otherwise;
 }
 
@@ -234,6 +236,60 @@ std::vector<double> along_normal(std::vector<double> offsets, const DicomSlice& 
     return offsets;
 }
 
+/// The numbers of a vector that counts the frames. One of another length tells nothing, which is
+/// noted.
+std::vector<double> vector_of(std::vector<DicomSlice>& slices, const DicomGroup& data, DicomTag tag,
+                              const char* name) {
+    std::vector<double> numbers = data.numbers(tag);
+    for (const double number : numbers) check_coordinate(number, name);
+    if (numbers.size() == slices.size()) return numbers;
+    for (DicomSlice& s : slices) {
+        if (!data.has(tag)) break;
+        add_note(s.notes, "its " + std::string(name) + " has " + std::to_string(numbers.size()) +
+                              " numbers for " + std::to_string(slices.size()) +
+                              " frames: it was ignored");
+    }
+    return {};
+}
+
+/// By the vector that gives a place for each frame; false if there is none.
+bool place_by_vector(std::vector<DicomSlice>& slices, const DicomGroup& data, Counted by) {
+    if (by != Counted::by_offset && by != Counted::by_location) return false;
+    const bool is_grid = by == Counted::by_offset;
+    const char* const name = is_grid ? "GridFrameOffsetVector" : "SliceLocationVector";
+    const auto offsets = vector_of(slices, data, is_grid ? grid_offsets : frame_locations, name);
+    if (offsets.empty()) return false;
+    place_behind(slices, is_grid ? along_normal(offsets, slices.front()) : offsets);
+    for (std::size_t i = 0; i < slices.size(); ++i) {
+        // PS3.3 leaves open in which direction SliceLocation counts.
+        slices[i].is_sided = is_grid;
+        if (slices[i].is_placed()) continue;
+        slices[i].location = offsets[i];
+        slices[i].location_source = name;
+    }
+    return true;
+}
+
+/// The place of each frame among the slices, from 0, by numbers of pages, which may have gaps;
+/// that of the file if they name a page twice.
+std::vector<int> order_of_pages(std::vector<DicomSlice>& slices, const DicomGroup& data,
+                                std::vector<int> order) {
+    constexpr const char* name = "PageNumberVector";
+    const auto numbers = vector_of(slices, data, pages, name);
+    std::vector<double> sorted = numbers;
+    std::ranges::sort(sorted);
+    if (std::ranges::adjacent_find(sorted) != sorted.end()) {
+        for (DicomSlice& s : slices) {
+            add_note(s.notes, std::string("its ") + name + " names a page twice: it was ignored");
+        }
+        return order;
+    }
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        order[i] = static_cast<int>(std::ranges::lower_bound(sorted, numbers[i]) - sorted.begin());
+    }
+    return order;
+}
+
 std::vector<double> even_distances(const std::vector<int>& order, double step) {
     std::vector<double> distances;
     for (const int place : order) distances.push_back(place * step);
@@ -263,24 +319,14 @@ std::vector<DicomSlice> plain_frames(DicomSlice file, const DicomGroup& data) {
                       "export a reconstructed volume");
     }
     const bool has_place = file.position || data.has(between_tag) || file.between != 0;
-    if (by == Counted::by_time || (by == Counted::by_nothing && !has_place && is_film(data))) {
+    const bool is_open = by == Counted::by_nothing || by == Counted::by_page;
+    if (by == Counted::by_time || (is_open && !has_place && is_film(data))) {
         set_film(slices, data);
         return slices;
     }
-    if (by == Counted::by_offset || by == Counted::by_location) {
-        const bool is_grid = by == Counted::by_offset;
-        const auto offsets = data.numbers(is_grid ? grid_offsets : frame_locations);
-        for (const double offset : offsets) {
-            check_coordinate(offset, is_grid ? "GridFrameOffsetVector" : "SliceLocationVector");
-        }
-        if (offsets.size() == slices.size()) {
-            place_behind(slices, is_grid ? along_normal(offsets, file) : offsets);
-            // PS3.3 leaves open in which direction SliceLocation counts.
-            for (DicomSlice& s : slices) s.is_sided = is_grid;
-            return slices;
-        }
-    }
-    const std::vector<int> order = order_of(file, data);
+    if (place_by_vector(slices, data, by)) return slices;
+    std::vector<int> order = order_of(file, data);
+    if (by == Counted::by_page) order = order_of_pages(slices, data, std::move(order));
     for (std::size_t i = 0; i < slices.size(); ++i) slices[i].order = order[i];
     check_coordinate(file.between, "DICOM tag SpacingBetweenSlices");
     if (file.between != 0) {

@@ -10,6 +10,7 @@
 #include <limits>
 #include <sstream>
 
+#include "io/helper/dicom_text.hpp"
 #include "io/helper/headers.hpp"
 
 namespace palpate::io {
@@ -50,6 +51,11 @@ std::string DicomGroup::text(DicomTag tag) const {
     }
     if (!all.empty()) all.pop_back();
     return all;
+}
+
+std::string DicomGroup::words(DicomTag tag, const std::string& set) const {
+    const std::string raw = bytes(tag);
+    return trimmed(utf8_of(raw.substr(0, raw.find('\0')), set));
 }
 
 std::vector<double> DicomGroup::numbers(DicomTag tag) const {

@@ -27,6 +27,8 @@ class DicomGroup {
 
     /// Each of its values without padding.
     std::string text(DicomTag tag) const;
+    /// Words of a person in UTF-8, by the SpecificCharacterSet of the file.
+    std::string words(DicomTag tag, const std::string& set) const;
     /// Numbers as text (DS, IS). Throws Failure where they make no sense.
     std::vector<double> numbers(DicomTag tag) const;
     /// The first of them, if it is within +-1e9.

@@ -25,6 +25,17 @@ void note_overlays(DicomSlice& s, const DicomGroup& data) {
     }
 }
 
+/// The numbers that its samples may have.
+void set_stored(DicomSlice& s, const DicomExtent& extent) {
+    const bool is_given = extent.stored_bits > 0 && extent.stored_bits <= extent.bits;
+    const auto bits = static_cast<int>(is_given ? extent.stored_bits : extent.bits);
+    const bool is_signed = extent.representation == 1;
+    s.bits = static_cast<int>(extent.bits);
+    s.is_real = extent.is_real;
+    s.least = is_signed ? -std::ldexp(1.0, bits - 1) : 0;
+    s.most = std::ldexp(1.0, is_signed ? bits - 1 : bits) - 1;
+}
+
 DicomSlice file_as_slice(const fs::path& file, const DicomExtent& extent, const DicomGroup& data) {
     DicomSlice s;
     s.file = file;
@@ -39,12 +50,14 @@ DicomSlice file_as_slice(const fs::path& file, const DicomExtent& extent, const 
     s.frames = static_cast<int>(extent.frames);
     s.instance_uid = data.text({0x0008, 0x0018});
     s.series_uid = data.text({0x0020, 0x000e});
-    s.description = data.text({0x0008, 0x103e});
+    const std::string set = data.text({0x0008, 0x0005});
+    s.description = data.words({0x0008, 0x103e}, set);
+    set_stored(s, extent);
     set_kind(s, data);
     set_moment(s, data);
-    s.patient = data.text({0x0010, 0x0010});
-    s.study = data.text({0x0008, 0x1030});
-    s.patient_id = data.text({0x0010, 0x0020});
+    s.patient = data.words({0x0010, 0x0010}, set);
+    s.study = data.words({0x0008, 0x1030}, set);
+    s.patient_id = data.words({0x0010, 0x0020}, set);
     s.study_uid = data.text({0x0020, 0x000d});
     s.frame_of_reference = data.text({0x0020, 0x0052});
     set_place(s, data);
@@ -99,7 +112,10 @@ std::vector<DicomSlice> slices_of(const fs::path& file) {
                       " has no samples (pixel data), but says how large its image is; copy or "
                       "export it again, or remove it from the folder");
     }
-    const MemoryBound bound(8 * extent.header.size());
+    // Of short elements, GDCM's tree takes many times their bytes. Each frame becomes a slice.
+    constexpr std::uint64_t in_tree = 64, in_slice = 8192;
+    const MemoryBound bound(in_tree * extent.header.size() +
+                            in_slice * static_cast<std::uint64_t>(extent.frames));
     std::istringstream header(extent.header);
     gdcm::Reader reader;
     reader.SetStream(header);

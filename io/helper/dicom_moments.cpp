@@ -6,6 +6,8 @@
 #include <limits>
 #include <numeric>
 
+#include "io/helper/dicom_traits.hpp"
+
 namespace palpate::io {
 namespace {
 
@@ -19,6 +21,12 @@ class Moments {
     }
 
     void sort(std::vector<std::string>& notes) {
+        put_in_order(notes);
+        for (const DicomTrait& trait : traits_in(series_)) keep_together(trait.name);
+    }
+
+  private:
+    void put_in_order(std::vector<std::string>& notes) {
         if (sort_by_shared_keys()) return;
         for (std::size_t key = 0; key < keys_; ++key) {
             if (!tells_apart({key})) continue;
@@ -29,7 +37,31 @@ class Moments {
         fail();
     }
 
-  private:
+    /// If every place has the same values of a property (directions of diffusion), each time step
+    /// gets one of them, in the order of the first place.
+    void keep_together(const char* name) {
+        const TraitClasses classes = classes_of(series_, name);
+        const auto classes_at = [&](const std::vector<PlacedSlice>& group) {
+            std::vector<std::size_t> all;
+            for (const PlacedSlice& p : group) all.push_back(classes[p.slice]);
+            return all;
+        };
+        const auto order = classes_at(groups_.front());
+        const auto is_shared = [&](const auto& group) {
+            return std::ranges::is_permutation(classes_at(group), order);
+        };
+        if (!std::ranges::all_of(groups_, is_shared)) return;
+        for (auto& group : groups_) {
+            for (std::size_t k = 0; k < order.size(); ++k) {
+                const auto from = group.begin() + static_cast<std::ptrdiff_t>(k);
+                const auto next = std::find_if(from, group.end(), [&](const PlacedSlice& p) {
+                    return classes[p.slice] == order[k];
+                });
+                std::rotate(from, next, next + 1);
+            }
+        }
+    }
+
     static constexpr const char* const names[] = {"", "TemporalPositionIdentifier", "TriggerTime",
                                                   "NominalPercentageOfCardiacPhase",
                                                   "FrameReferenceTime"};

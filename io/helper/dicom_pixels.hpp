@@ -28,13 +28,25 @@ std::optional<std::string> check_plain_pixels(const std::filesystem::path& file,
                                               const DicomBytes& bytes, const DicomPixels& pixels,
                                               const DicomExtent& declared);
 
-/// The code stream of each frame: its fragments joined, without padding.
-std::vector<std::vector<std::byte>> frames_of(const DicomBytes& bytes, const DicomPixels& pixels,
-                                              const DicomExtent& declared);
+/// What is stored for each frame: its fragments joined, without what follows the end of an image.
+struct DicomStreams {
+    std::vector<std::vector<std::byte>> frames;
+    std::uint64_t surplus = 0;  ///< bytes behind the ends, other than a few of padding
+};
+DicomStreams streams_of(const DicomBytes& bytes, const DicomPixels& pixels,
+                        const DicomExtent& declared);
 
-/// Every frame's own size and end; returns the name of the compression. Throws Failure.
-std::string check_compressed_pixels(const std::filesystem::path& file, const std::string& syntax,
-                                    const DicomBytes& bytes, const DicomPixels& pixels,
-                                    const DicomExtent& declared);
+/// A frame as a decoder or we ourselves go on with it: a code stream, or samples that were deflated
+/// or lay in a fragment as they are. Throws Failure.
+std::vector<std::byte> frame_of(const std::filesystem::path& file, std::vector<std::byte> stream,
+                                const DicomExtent& declared);
+
+/// Whether a transfer syntax is one of the standard's that we know.
+bool is_known_syntax(const std::string& syntax);
+
+/// Every frame's own size and end; takes down the name of the compression, and notes. Throws
+/// Failure.
+void check_compressed_pixels(const std::filesystem::path& file, const DicomBytes& bytes,
+                             const DicomPixels& pixels, DicomExtent& declared);
 
 }  // namespace palpate::io

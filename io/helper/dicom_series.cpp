@@ -7,6 +7,8 @@
 #include <iterator>
 #include <map>
 
+#include "io/helper/dicom_parts.hpp"
+
 namespace palpate::io {
 namespace {
 
@@ -42,103 +44,12 @@ double place_along(const DicomSlice& s) {
     return s.row->cross(*s.column).dot(*s.position);
 }
 
-/// In order; empty where slices have no place.
-std::vector<double> places_along(const DicomSeries& series) {
-    std::vector<double> along;
-    for (const DicomSlice& s : series.slices) {
-        if (!s.is_placed()) return {};
-        along.push_back(place_along(s));
-    }
-    std::sort(along.begin(), along.end());
-    return along;
-}
-
 void name_echo(DicomSeries& series) {
     const double echo = series.slices.front().echo;
     if (!std::isfinite(echo)) return;
     for (DicomSlice& s : series.slices) {
         s.kind += (s.kind.empty() ? "" : ", ") + ("echo time " + text_of(echo)) + " ms";
     }
-}
-
-struct Place {
-    double along = 0;  ///< [mm] of its first slice
-    int slices = 0;
-};
-
-/// In order; empty where slices have no place.
-std::vector<Place> counted_places(const DicomSeries& series) {
-    const std::vector<double> along = places_along(series);
-    const double least = same_place_mm(series);
-    std::vector<Place> places;
-    for (std::size_t i = 0; i < along.size(); ++i) {
-        if (i == 0 || along[i] - along[i - 1] > least) places.push_back({along[i]});
-        ++places.back().slices;
-    }
-    return places;
-}
-
-bool has_several_at_one_place(const DicomSeries& series) {
-    return std::ranges::any_of(counted_places(series), [](const Place& p) { return p.slices > 1; });
-}
-
-/// The parts of a series that a property of its slices tells apart, which their kinds then name.
-template <class Name>
-std::vector<DicomSeries> divided(DicomSeries series, const Name& name_of) {
-    std::map<std::string, DicomSeries> parts;
-    for (DicomSlice& s : series.slices) {
-        const std::string name = name_of(s);
-        DicomSeries& one = parts[name];
-        one.uid = series.uid;
-        s.kind += (s.kind.empty() || name.empty() ? "" : ", ") + name;
-        one.slices.push_back(std::move(s));
-    }
-    std::vector<DicomSeries> all;
-    for (auto& [name, one] : parts) all.push_back(std::move(one));
-    return all;
-}
-
-/// Contrasts (water, fat) apart, where there are several at one place.
-std::vector<DicomSeries> by_contrast(DicomSeries series) {
-    if (!has_several_at_one_place(series)) return {std::move(series)};
-    return divided(std::move(series), [](const DicomSlice& s) { return s.contrast; });
-}
-
-/// Whether each part is a volume of its own, which overlaps with another one. Parts of one volume
-/// leave out places that other parts have (every second slice), or lie beside them.
-bool are_volumes(const std::vector<DicomSeries>& parts, const std::vector<Place>& places) {
-    const double least = same_place_mm(parts.front());
-    const auto lies_in = [&](double place, const std::vector<double>& along) {
-        return place >= along.front() - least && place <= along.back() + least;
-    };
-    std::vector<std::vector<double>> all;
-    std::ranges::transform(parts, std::back_inserter(all), places_along);
-    return std::ranges::all_of(all, [&](const auto& along) {
-        const auto is_missing = [&](const Place& p) {
-            const auto is_here = [&](double a) { return std::abs(a - p.along) <= least; };
-            return lies_in(p.along, along) && std::ranges::none_of(along, is_here);
-        };
-        const auto overlaps = [&](const auto& other) {
-            return &other != &along &&
-                   (lies_in(other.front(), along) || lies_in(along.front(), other));
-        };
-        return std::ranges::none_of(places, is_missing) && std::ranges::any_of(all, overlaps);
-    });
-}
-
-/// Acquisitions apart, where they overlap: some places have slices of several of them, but not all
-/// places, as those of time steps have.
-std::vector<DicomSeries> by_acquisition(DicomSeries series) {
-    const std::vector<Place> places = counted_places(series);
-    const auto differ = [](const Place& a, const Place& b) { return a.slices != b.slices; };
-    if (std::ranges::adjacent_find(places, differ) == places.end()) return {std::move(series)};
-    const auto parts = divided(series, [](const DicomSlice& s) {
-        const double number = s.frames == 1 ? s.keys.at(acquisition_number) : 0;
-        return number > 0 ? "acquisition " + text_of(number) : "";
-    });
-    const bool are_apart =
-        std::ranges::none_of(parts, has_several_at_one_place) && are_volumes(parts, places);
-    return are_apart ? parts : std::vector{std::move(series)};
 }
 
 /// An anonymiser may give each file an identity of its own. It then tells nothing apart.
@@ -177,6 +88,17 @@ std::string difference_of(const DicomSeries& series, const std::vector<DicomSeri
 
 }  // namespace
 
+/// In order; empty where slices have no place.
+std::vector<double> places_along(const DicomSeries& series) {
+    std::vector<double> along;
+    for (const DicomSlice& s : series.slices) {
+        if (!s.is_placed()) return {};
+        along.push_back(place_along(s));
+    }
+    std::sort(along.begin(), along.end());
+    return along;
+}
+
 /// Some scanners have pixels of 1 um.
 double same_place_mm(const DicomSeries& series) {
     const auto& pixel = series.slices.front().pixel;
@@ -200,9 +122,7 @@ std::vector<DicomSeries> series_of(std::vector<DicomSlice> slices) {
     for (auto& [key, alike] : sorted) {
         for (DicomSeries& one : alike) {
             name_echo(one);
-            for (DicomSeries& contrast : by_contrast(std::move(one))) {
-                std::ranges::move(by_acquisition(std::move(contrast)), std::back_inserter(all));
-            }
+            std::ranges::move(parts_of(std::move(one)), std::back_inserter(all));
         }
     }
     return all;

@@ -17,6 +17,9 @@ std::vector<DicomSeries> series_of(std::vector<DicomSlice> slices);
 /// throws ChooseSeries, without pictures.
 const DicomSeries& choose_series(const std::vector<DicomSeries>& all, const std::string& chosen);
 
+/// [mm] of its slices along the normal, in order; empty where slices have no place.
+std::vector<double> places_along(const DicomSeries& series);
+
 /// [mm] Slices of the series that are nearer to each other lie at one place.
 double same_place_mm(const DicomSeries& series);
 

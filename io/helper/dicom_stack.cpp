@@ -4,21 +4,24 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <tuple>
 
 #include "io/helper/dicom_moments.hpp"
 #include "io/helper/dicom_series.hpp"
+#include "io/helper/dicom_stations.hpp"
+#include "io/helper/numbered_names.hpp"
 
 namespace palpate::io {
 namespace {
 
-constexpr double even_part = 0.02;     // of the spacing
-constexpr double missing_part = 0.1;   // the same, of slices beside missing ones
-constexpr double shift_pixels = 0.05;  // more is gantry tilt
+constexpr double even_part = 0.02;    // of the spacing
+constexpr double missing_part = 0.1;  // the same, of slices beside missing ones
+
 SliceGroups groups_of(const DicomSeries& series, const Vec3& normal) {
     std::vector<PlacedSlice> placed;
     for (std::size_t i = 0; i < series.slices.size(); ++i) {
-        placed.push_back({i, normal.dot(*series.slices[i].position), 0, 0});
+        placed.push_back({i, normal.dot(*series.slices[i].position), i});
     }
     std::stable_sort(placed.begin(), placed.end(),
                      [](const auto& a, const auto& b) { return a.along < b.along; });
@@ -32,8 +35,25 @@ SliceGroups groups_of(const DicomSeries& series, const Vec3& normal) {
     return groups;
 }
 
+/// Slices at one place of a grid are moments only if they cover each other.
+void check_covering(const DicomSeries& series, const SliceGroups& groups) {
+    for (const auto& group : groups) {
+        const DicomSlice& first = series.slices[group.front().slice];
+        if (!first.is_placed()) return;
+        for (const PlacedSlice& p : group) {
+            const DicomSlice& other = series.slices[p.slice];
+            if (place_in_plane(other, first).cwiseAbs().maxCoeff() <= same_place_pixels) continue;
+            throw Failure("some of its slices lie side by side in one plane (" +
+                          text_of((*other.position - *first.position).norm()) +
+                          " mm apart): they are of several volumes; export each of these as a "
+                          "series of its own");
+        }
+    }
+}
+
 void choose_time_step(const DicomSeries& series, SliceGroups groups, const Request& request,
                       Stack& stack) {
+    check_covering(series, groups);
     const std::size_t steps = groups.front().size();
     for (const auto& group : groups) {
         if (group.size() == steps) continue;
@@ -44,7 +64,12 @@ void choose_time_step(const DicomSeries& series, SliceGroups groups, const Reque
     sort_by_moment(series, groups, stack.notes);
     const int step = checked_time_step(request, static_cast<std::int64_t>(steps));
     stack.time_steps = static_cast<int>(steps);
-    for (const auto& group : groups) stack.slices.push_back(group[static_cast<std::size_t>(step)]);
+    // Positions of the same place may differ by rounding from time to time: the first ones count.
+    for (const auto& group : groups) {
+        stack.slices.push_back(group[static_cast<std::size_t>(step)]);
+        stack.slices.back().along = group.front().along;
+        stack.slices.back().at = group.front().slice;
+    }
     stack.seconds = series.slices[stack.slices.front().slice].seconds;
 }
 
@@ -142,11 +167,40 @@ void fill_grid(const Steps& steps, Stack& stack) {
     }
 }
 
+/// Whether the shift of the slices grows evenly along the normal, as that of a tilted gantry.
+bool is_tilt(const std::vector<PlacedSlice>& slices) {
+    constexpr double most = 0.25;  // [pixels]
+    const PlacedSlice& last = slices.back();
+    return std::ranges::all_of(slices, [&](const PlacedSlice& p) {
+        const double part = last.along > 0 ? p.along / last.along : 0;
+        return std::abs(p.u - part * last.u) <= most && std::abs(p.v - part * last.v) <= most;
+    });
+}
+
+void note_shear(const Vec3& pixel, Stack& stack) {
+    const auto shift = [&](const PlacedSlice& p) {
+        return std::hypot(p.u * pixel[0], p.v * pixel[1]);
+    };
+    if (is_tilt(stack.slices)) {
+        const double angle = std::atan2(shift(stack.slices.back()), stack.slices.back().along);
+        stack.notes.push_back("its slices are shifted against each other (gantry tilt of " +
+                              text_of(std::round(angle * 1800 / 3.14159265358979) / 10) +
+                              " degrees): straightened by interpolation within the slices");
+        return;
+    }
+    double most = 0;
+    for (const PlacedSlice& p : stack.slices) most = std::max(most, shift(p));
+    stack.notes.push_back("its slices are shifted against each other by up to " +
+                          text_of(std::round(most * 1000) / 1000) +
+                          " mm, which is no gantry tilt: put in their places by interpolation "
+                          "within the slices; the series may be mixed of several");
+}
+
 void find_shear(const DicomSeries& series, const Vec3& row, const Vec3& column, Stack& stack) {
-    const DicomSlice& first = series.slices[stack.slices.front().slice];
+    const DicomSlice& first = series.slices[stack.slices.front().at];
     double last_u = 0, last_v = 0, worst = 0;
     for (PlacedSlice& p : stack.slices) {
-        const Vec3 d = *series.slices[p.slice].position - *first.position;
+        const Vec3 d = *series.slices[p.at].position - *first.position;
         p.u = row.dot(d) / (*first.pixel)[0];
         p.v = column.dot(d) / (*first.pixel)[1];
         stack.first_u = std::min(stack.first_u, p.u);
@@ -155,17 +209,12 @@ void find_shear(const DicomSeries& series, const Vec3& row, const Vec3& column, 
         last_v = std::max(last_v, p.v);
         worst = std::max({worst, std::abs(p.u), std::abs(p.v)});
     }
-    if (worst <= shift_pixels) {
+    if (worst <= same_place_pixels) {
         stack.first_u = stack.first_v = 0;
         return;
     }
-    const Vec3 whole = *series.slices[stack.slices.back().slice].position - *first.position;
-    const double angle =
-        std::atan2(std::hypot(row.dot(whole), column.dot(whole)), stack.slices.back().along);
     stack.sheared = true;
-    stack.notes.push_back("its slices are shifted against each other (gantry tilt of " +
-                          text_of(std::round(angle * 1800 / 3.14159265358979) / 10) +
-                          " degrees): straightened by interpolation within the slices");
+    note_shear(*first.pixel, stack);
     const auto more = [](double low, double high) {
         return static_cast<int>(std::ceil(high - low - 1e-6));
     };
@@ -202,6 +251,7 @@ struct Locations {
     const char* source = nullptr;
     std::vector<double> along;  ///< empty if there are none
     bool is_sided = true;
+    bool may_repeat = false;  ///< slices at one place are moments
 };
 
 /// Their positions along the line on which these lie, or else their SliceLocation, whose sign the
@@ -224,8 +274,9 @@ Locations locations_of(const std::vector<DicomSlice>& slices) {
             found.along.push_back(line.stableNormalized().dot(*s.position));
         }
     } else if (std::ranges::all_of(slices, [](const auto& s) { return s.location.has_value(); })) {
-        found.source = "SliceLocation";
+        found.source = slices.front().location_source;
         found.is_sided = false;
+        found.may_repeat = slices.front().frames > 1;
         for (const DicomSlice& s : slices) found.along.push_back(*s.location);
     }
     return found;
@@ -258,7 +309,9 @@ void place_by_location(DicomSeries& series, std::vector<std::string>& notes) {
     std::ranges::sort(sorted);
     const double least = same_place_mm(series);
     const auto is_near = [&](double a, double b) { return b - a <= least; };
-    if (std::ranges::adjacent_find(sorted, is_near) != sorted.end() || sorted.empty()) {
+    const bool is_place = !sorted.empty() && !is_near(sorted.front(), sorted.back());
+    const bool repeats = std::ranges::adjacent_find(sorted, is_near) != sorted.end();
+    if (!is_place || (repeats && !locations.may_repeat)) {
         if (!placed || !are_only_numbered(series)) return;
         for (DicomSlice& s : series.slices) s.position.reset();
         return;
@@ -293,12 +346,45 @@ void check_all_placed(const DicomSeries& series) {
                   ", and others do; correct it, or take that slice away");
 }
 
+/// By the names of their files, if their own numbers do not count them. Throws Failure.
+void number_by_names(DicomSeries& series, std::vector<std::string>& notes) {
+    std::vector<std::filesystem::path> files;
+    std::set<int> numbers;
+    for (const DicomSlice& s : series.slices) {
+        if (s.frames > 1 || s.is_moment) return;
+        files.push_back(s.file);
+        numbers.insert(s.instance);
+    }
+    if (numbers.size() == files.size()) return;
+    const std::string what = "its slices say neither where they lie nor in which order ";
+    std::vector<std::vector<std::filesystem::path>> times;
+    try {
+        times = numbered_slices(files).times;
+    } catch (const Failure&) {
+        times.clear();
+    }
+    const bool have_numbers = std::ranges::all_of(files, [](const auto& file) {
+        return file.filename().string().find_first_of("0123456789") != std::string::npos;
+    });
+    if (!have_numbers) times.clear();
+    if (times.size() != 1 || times[0].size() != files.size()) {
+        throw Failure(what + "(" + std::to_string(numbers.size()) + " of " +
+                      std::to_string(files.size()) +
+                      " InstanceNumbers differ, and the names of the files do not count them); "
+                      "correct it, or export it again");
+    }
+    for (DicomSlice& s : series.slices) {
+        s.instance = static_cast<int>(std::ranges::find(times[0], s.file) - times[0].begin());
+    }
+    notes.push_back(what + "(InstanceNumber): the numbers in the names of their files were taken");
+}
+
 /// Slices without position or orientation, stacked in the order of their numbers, or moments of
 /// one. Frames of one file with the same number are moments, too.
 void pile_up(const DicomSeries& series, const Request& request, Stack& stack) {
     const bool is_moment = series.slices.front().is_moment;
     std::vector<PlacedSlice> slices;
-    for (std::size_t i = 0; i < series.slices.size(); ++i) slices.push_back({i, 0, 0, 0});
+    for (std::size_t i = 0; i < series.slices.size(); ++i) slices.push_back({i, 0, i});
     const auto number = [&](const PlacedSlice& p) {
         const DicomSlice& s = series.slices[p.slice];
         return std::tuple(s.instance, s.frames > 1 ? s.file : std::filesystem::path(), s.order);
@@ -347,6 +433,7 @@ Stack stack_slices(const DicomSeries& series, const Request& request) {
     }
     if (!std::ranges::all_of(scaled.slices, &DicomSlice::is_placed)) {
         check_all_placed(scaled);
+        number_by_names(scaled, stack.notes);
         pile_up(scaled, request, stack);
         stack.geometry.size[2] = static_cast<int>(stack.slices.size());
         if (directed) stack.geometry.direction = plane_axes(scaled.slices.front());
@@ -369,7 +456,7 @@ Stack stack_slices(const DicomSeries& series, const Request& request) {
         set_single_spacing(any, stack);
     }
     stack.geometry.size[2] = static_cast<int>(stack.grid.size());
-    const DicomSlice& first = scaled.slices[stack.slices.front().slice];
+    const DicomSlice& first = scaled.slices[stack.slices.front().at];
     stack.geometry.origin = *first.position + row * (stack.first_u * stack.geometry.spacing[0]) +
                             column * (stack.first_v * stack.geometry.spacing[1]);
     return stack;

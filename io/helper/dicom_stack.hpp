@@ -10,6 +10,7 @@ namespace palpate::io {
 struct PlacedSlice {
     std::size_t slice = 0;  ///< which of the series
     double along = 0;       ///< [mm] from the first slice, along the normal
+    std::size_t at = 0;     ///< the slice whose place counts, so that all time steps have one grid
     double u = 0, v = 0;    ///< shift within the plane against the first slice [pixels]
 };
 

@@ -7,7 +7,9 @@
 #include <functional>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <set>
+#include <tuple>
 
 #include "io/helper/dicom_header.hpp"
 #include "io/helper/dicom_index.hpp"
@@ -23,25 +25,88 @@ namespace fs = std::filesystem;
 
 constexpr const char* packed = "is packed; unpack it with gunzip";
 
-/// The type for all slices together: Hounsfield units and the like come as 32-bit integers.
-SampleType common_type(const std::vector<Decoded>& slices, std::vector<std::string>& notes) {
+bool is_whole(const DicomSlice& s) {
+    return s.table || (s.slope == std::floor(s.slope) && s.intercept == std::floor(s.intercept));
+}
+
+/// The values that a slice may have, whatever it has.
+std::pair<double, double> possible_values(const DicomSlice& s) {
+    if (s.table) {
+        const auto [least, most] = std::ranges::minmax(s.table->values);
+        return {least, most};
+    }
+    return std::minmax({s.slope * s.least + s.intercept, s.slope * s.most + s.intercept});
+}
+
+struct PossibleValues {
+    double low = 0, high = 0;
+    bool are_floats = false;
+};
+
+/// The least type for whole numbers.
+SampleType whole_type(const PossibleValues& values) {
+    if (!values.are_floats && values.low >= -32768 && values.high <= 32767) {
+        return SampleType::int16;
+    }
+    const bool fit = !values.are_floats && values.low >= 0 && values.high <= 65535;
+    return fit ? SampleType::uint16 : SampleType::float32;
+}
+
+/// What the headers of all slices allow, in the place of what those of one time step have.
+PossibleValues possible_values(const DicomSeries& series) {
+    PossibleValues all;
+    for (const DicomSlice& s : series.slices) {
+        const auto [least, most] = possible_values(s);
+        all.low = std::min(all.low, least);
+        all.high = std::max(all.high, most);
+        all.are_floats = all.are_floats || s.is_real || !is_whole(s);
+    }
+    return all;
+}
+
+/// The type for all time steps of a series if it does not change the stored numbers: theirs.
+std::optional<SampleType> stored_type(const DicomSeries& series) {
+    const DicomSlice& first = series.slices.front();
+    const bool kept = std::ranges::all_of(series.slices, [&](const DicomSlice& s) {
+        return s.slope == 1 && s.intercept == 0 && !s.table && !s.is_real && s.bits <= 16 &&
+               s.bits == first.bits && (s.least < 0) == (first.least < 0);
+    });
+    if (!kept) return std::nullopt;
+    return first.least < 0  ? SampleType::int16
+           : first.bits > 8 ? SampleType::uint16
+                            : SampleType::uint8;
+}
+
+/// The type for all slices together: Hounsfield units and the like come as 32-bit integers. Those
+/// of `series` that are taken are `slices`. All time steps have one type, so that it must not
+/// depend on the values of one of them.
+SampleType common_type(const DicomSeries& series, int time_steps,
+                       const std::vector<Decoded>& slices, std::vector<std::string>& notes) {
     const Stored first = slices.front().stored;
-    bool same = true, floats = false;
-    auto [low, high] = range_of(first, slices.front().samples);
+    bool same = true;
+    PossibleValues values = time_steps > 1 ? possible_values(series) : PossibleValues();
+    values.are_floats = !std::ranges::all_of(series.slices, is_whole);
+    if (time_steps == 1) {
+        std::tie(values.low, values.high) = range_of(first, slices.front().samples);
+    }
     for (const Decoded& d : slices) {
         same = same && d.stored == first;
-        floats = floats || is_real(d.stored);
+        values.are_floats = values.are_floats || is_real(d.stored);
         const auto range = range_of(d.stored, d.samples);
-        low = std::min(low, range.first);
-        high = std::max(high, range.second);
+        values.low = std::min(values.low, range.first);
+        values.high = std::max(values.high, range.second);
     }
-    if (same && kept_as(first) != SampleType::float32) return kept_as(first);
-    if (!floats && low >= -32768 && high <= 32767) return SampleType::int16;
-    if (!floats && low >= 0 && high <= 65535) return SampleType::uint16;
-    if (same && first == Stored::float32) return SampleType::float32;
-    notes.push_back(floats ? "its slope or intercept is not a whole number: samples became float32"
-                           : "its values go from " + text_of(low) + " to " + text_of(high) +
-                                 ", beyond 16 bits: samples became float32");
+    const auto stored = time_steps > 1 ? stored_type(series) : std::nullopt;
+    if (stored) return *stored;
+    if (time_steps == 1 && same && !values.are_floats && kept_as(first) != SampleType::float32) {
+        return kept_as(first);
+    }
+    const SampleType type = whole_type(values);
+    if (type != SampleType::float32 || (same && first == Stored::float32)) return type;
+    notes.push_back(values.are_floats
+                        ? "its slope or intercept is not a whole number: samples became float32"
+                        : "its values go from " + text_of(values.low) + " to " +
+                              text_of(values.high) + ", beyond 16 bits: samples became float32");
     return SampleType::float32;
 }
 
@@ -224,7 +289,7 @@ Result read_series(const DicomSeries& given, const Request& request) {
     note_missing_rescale(taken, result.notes);
     note_more_bits(taken, decoded, result.notes);
     warnings.note(result.notes);
-    result.type = common_type(decoded, result.notes);
+    result.type = common_type(series, stack.time_steps, decoded, result.notes);
     const auto pixels = static_cast<std::size_t>(one.columns) * static_cast<std::size_t>(one.rows);
     double outside = range_of(decoded[0].stored, decoded[0].samples).first;
     std::vector<std::vector<std::byte>> slices;

@@ -170,10 +170,10 @@ bool is_swapped(const HeaderFields& fields, Stored stored, const DataPlace& plac
 }
 
 /// Labels of 3D Slicer's segmentations: "Segment0_LabelValue:=1", "Segment0_Name:=liver",
-/// "Segment0_Color:=0.5 0.2 0.1". Labels whose value is nonsense are ignored.
+/// "Segment0_Color:=0.5 0.2 0.1". Labels with nonsense for a value are ignored.
 /// Overlapping segments are in several layers, which are the file's frames: "Segment0_Layer:=1".
-/// Before version 4.11, each segment had a layer of its own, and the value 1.
-std::vector<LabelName> labels_of(const HeaderFields& fields, int frame, bool has_layers) {
+/// Versions before 4.11 name neither: each segment has a layer of its own, with the value 1.
+std::vector<LabelName> labels_of(const HeaderFields& fields, int frame) {
     constexpr int most = 4096;
     std::vector<LabelName> labels;
     for (int i = 0; i < most; ++i) {
@@ -182,10 +182,11 @@ std::vector<LabelName> labels_of(const HeaderFields& fields, int frame, bool has
             return found == fields.keys.end() ? std::string() : found->second;
         };
         if (text("ID").empty() && text("LabelValue").empty()) break;
-        const int usual = has_layers ? i : frame;
-        if (number_from<int>(trimmed(text("Layer"))).value_or(usual) != frame) continue;
+        const std::string told = text("LabelValue");
+        const int layer = told.empty() ? i : frame;  // if it is not given
+        if (number_from<int>(trimmed(text("Layer"))).value_or(layer) != frame) continue;
         LabelName label;
-        std::istringstream value(text("LabelValue").empty() ? "1" : text("LabelValue"));
+        std::istringstream value(told.empty() ? "1" : told);
         if (!(value >> label.value)) continue;
         label.name = text("Name");
         std::istringstream colour(text("Color"));
@@ -219,7 +220,7 @@ VolumeHeader nrrd_header(const Request& request) {
     }
     take_axes(fields, header);
     note_ignored(fields, header.notes);
-    header.values.labels = labels_of(fields, request.time_step, header.steps > 1);
+    header.values.labels = labels_of(fields, request.time_step);
     return header;
 }
 

@@ -461,3 +461,12 @@ def test_an_mrc_that_is_not_read_is_refused(tmp_path):
         refused(tmp_path / "a.REC", "dcm2niix")
     path.write_bytes(b"PAR and REC of another program")
     refused(path, "too short")
+
+
+def test_segments_of_old_versions_of_slicer_have_a_layer_each(tmp_path):
+    path = tmp_path / "a.seg.nrrd"
+    keys = "".join(f"Segment{i}_ID:=S{i}\nSegment{i}_Name:={name}\n" for i, name in enumerate(("bone", "vessel")))
+    header = ("NRRD0004\ntype: uint8\ndimension: 4\nsizes: 2 6 4 5\nencoding: raw\nkinds: list domain domain domain\n"
+              "space: left-posterior-superior\nspace directions: none (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\n")
+    path.write_bytes((header + keys + "\n").encode() + bytes(240))
+    assert [palpate.load(path, frame=frame).values["labels"] for frame in (0, 1)] == [{1: "bone"}, {1: "vessel"}]

@@ -44,7 +44,13 @@ def as_volume(data: Any, spacing: Optional[ArrayLike] = None, origin: Optional[A
         samples, place = _from_nibabel(data, frame)
     else:
         samples, place = _frame_of(data, frame, axis=0), {}
-    return Volume(_kept(numpy.asanyarray(samples)), copy=None, **{**place, **given})
+    assumed = place.pop("assumed", False)
+    volume = Volume(_kept(numpy.asanyarray(samples)), copy=None, **{**place, **given})
+    if not assumed:
+        return volume
+    geometry = copy.copy(volume.geometry)
+    geometry.measured, geometry.oriented = "spacing" in given, "direction" in given
+    return volume._placed(geometry)
 
 
 def _placed(volume, given):
@@ -97,6 +103,12 @@ def _from_nibabel(image, frame):
     frames_first = getattr(image.header, "data_layout", "F") == "C"
     samples = numpy.asanyarray(_frame_of(image.dataobj, frame, axis=0 if frames_first else 3))
     shape = (*samples.shape, 1, 1, 1)[:3]
+    if _lacks_place(image):
+        _warn("the image's file does not give its place (goodRASFlag): 1 mm was taken along every axis, and coronal slices "
+              "around the origin, as FreeSurfer does")
+        direction = numpy.array([[1.0, 0, 0], [0, 0, -1], [0, -1, 0]])
+        origin = -0.5 * direction @ numpy.array(shape)
+        return samples.T, {"spacing": (1, 1, 1), "origin": origin, "direction": direction, "assumed": True}
     affine, placed = _affine_of(image, shape)
     affine = numpy.diag([-1.0, -1.0, 1.0, 1.0]) @ affine
     spacing = numpy.linalg.norm(affine[:3, :3], axis=0)
@@ -106,6 +118,20 @@ def _from_nibabel(image, frame):
     if placed:
         place["direction"] = _direction_of(affine, spacing, shape)
     return samples.T, place
+
+
+def _lacks_place(image):
+    """Whether an MGH file says that it gives no place. nibabel replaces this by a place of its own in the header."""
+    if not hasattr(image.header, "keys") or "goodRASFlag" not in image.header.keys():
+        return False
+    try:
+        with image.file_map["image"].get_prepare_fileobj("rb") as file:
+            return int.from_bytes(file.read(30)[28:], "big", signed=True) <= 0
+    except Exception:  # it was not read from a file, or that is gone
+        return False
+
+
+LENGTHS = {0: 1.0, 1: 1000.0, 2: 1.0, 3: 1e-3}  # [mm] of the units that NIfTI has
 
 
 def _affine_of(image, shape):
@@ -135,7 +161,10 @@ def _affine_of(image, shape):
         affine = header.get_qform()
     if not is_nifti:
         return affine, placed
-    unit = {"meter": 1000.0, "micron": 1e-3}.get(header.get_xyzt_units()[0], 1.0)
+    code = int(header["xyzt_units"]) & 7
+    if code not in LENGTHS:
+        _warn(f"the image's unit of length '{code}' is not known: mm were taken")
+    unit = LENGTHS.get(code, 1.0)
     return numpy.diag([unit, unit, unit, 1.0]) @ affine, placed
 
 

@@ -16,8 +16,10 @@ const tags = {
   echoTime: "00180081", echo: "00180086", bValue: "00189087", between: "00180088", thickness: "00180050", position: "00200032", orientation: "00200037",
   samples: "00280002", colours: "00280004", frames: "00280008", rows: "00280010", columns: "00280011", spacing: "00280030", allocated: "00280100",
   aspect: "00280034", stack: "00209056", frameType: "00089007", frameEcho: "00189082", stored: "00280101", highBit: "00280102", signed: "00280103", intercept: "00281052", slope: "00281053", units: "00281054", pixels: "7fe00010",
-  shared: "52009229", each: "52009230",
+  shared: "52009229", each: "52009230", patient: "00100020", study: "0020000d", space: "00200052",
 };
+/** Positions can be compared only within these. */
+const identities = ["patient", "study", "space"];
 /** Functional groups of frames, and what of them is taken. */
 const macros = {
   "00289110": [tags.spacing, tags.between, tags.thickness], "00209113": [tags.position], "00209116": [tags.orientation],
@@ -28,8 +30,8 @@ const unread = {
   "00283000": "a table of values (Modality LUT)", "3004000e": "a DoseGridScaling", "7fe00008": "samples of float32", "7fe00009": "samples of float64",
   "00620002": "segments", "00480006": "an image of tiles",
 };
-/** Storage classes without an image: reports, plans, structures, presentations, raw data, the index of a folder. */
-const withoutImage = /^((?!1\.2\.840\.10008\.5\.1\.4\.1\.1\.)\d|1\.2\.840\.10008\.5\.1\.4\.1\.1\.(9\.|11\.|66|67|88\.|104\.|481\.))/;
+/** All storage classes but those of images: reports, plans, structures, presentations, raw data, the index of a folder. */
+const withoutImage = /^(?!1\.2\.840\.10008\.5\.1\.4\.1\.1\.([1-7]|12|13|14|20|30|40|128|130|66\.4|66\.7|77\.1)(\.|$))\d|\.77\.1\.5\.3$/;
 const spectra = "1.2.840.10008.5.1.4.1.1.4.2";
 
 /** Elements by tag, for example "0020000e": bytes, or for a sequence its items. */
@@ -235,6 +237,7 @@ function framesOf({ header, pixelKind }) {
       isRescaled: one.has(tags.slope) && one.has(tags.intercept), units: one.text(tags.units),
       aspect: one.numbers(tags.aspect, 2), isInverse: one.text(tags.colours) === "MONOCHROME1",
       label: one.text(tags.description) || one.text(tags.seriesNumber) || one.text(tags.series),
+      identities: identities.map((name) => one.text(tags[name])),
       key: [
         ...["series", "imageType", "echoTime", "echo", "modality", "stack", "frameType"].map((name) => one.text(tags[name])),
         String(one.set.get(tags.bValue)), String(one.set.get(tags.frameEcho)), format.rows, format.columns,
@@ -248,8 +251,14 @@ const cross = ([a, b, c], [d, e, f]) => [b * f - c * e, c * d - a * f, a * e - b
 
 /** All frames, if they are of one series. */
 function oneSeries(frames) {
+  // An anonymiser may give each file an identity of its own. It then tells nothing apart.
+  const isUnique = identities.map((_, i) => {
+    const own = frames.map((frame) => frame.identities[i]);
+    return new Set(own).size === own.length && own.length > 2;
+  });
+  const keyOf = ({ key, identities: own }) => [key, ...own.filter((_, i) => !isUnique[i])].join("|");
   const groups = new Map();
-  for (const frame of frames) groups.set(frame.key, [...(groups.get(frame.key) ?? []), frame]);
+  for (const frame of frames) groups.set(keyOf(frame), [...(groups.get(keyOf(frame)) ?? []), frame]);
   if (groups.size === 1) return;
   const list = [...groups.values()].map(([{ label, key, rows, columns }, ...others]) => `${1 + others.length} of ${columns} x ${rows} '${label}' ${key.split("|")[1].replaceAll("\\", " ")}`);
   refuse(`there are ${groups.size} series in it (${list.slice(0, 8).join("; ")})`, "choose the files of one");
@@ -289,7 +298,9 @@ function stacked(frames, notes) {
   const tolerance = Math.max(Math.min(0.01, 0.1 * middle), 0.02 * middle);
   const [dy, dx] = spacingOf(first);
   const samePlace = 0.05 * Math.min(1, first.spacing ? Math.min(dx, dy) : 0.1); // [mm] nearer slices are moments of one
-  if (!gaps.every((one) => one > samePlace && Math.abs(one - middle) <= tolerance)) refuse("the slices of this series are not evenly spaced: some are missing, or there are several at one place");
+  // Gaps that differ by little may still add up: it is the places that have to be even.
+  const isEven = slices.every(({ height }, i) => Math.abs(height - slices[0].height - i * gap) <= tolerance);
+  if (!isEven || !gaps.every((one) => one > samePlace)) refuse("the slices of this series are not evenly spaced: some are missing, or there are several at one place");
   const isShifted = ({ position }) => {
     const from = position.map((x, i) => x - slices[0].position[i]);
     return Math.abs(dot(across, from)) > 0.05 * dx || Math.abs(dot(down, from)) > 0.05 * dy;

@@ -428,6 +428,8 @@ REFUSED_DICOM = {
     "stacks": ("2 series", lambda at: grouped(at, stacks="1122")), "frame_echoes": ("2 series", lambda at: grouped(at, echoes="1122")),
     "one_place": ("several at one place", lambda at: slices(at, 3, lambda k: {"ImagePositionPatient": [-10, 20 + 0.01 * k, 30]})), "tiles": ("tiles", lambda at: slices(at, TotalPixelMatrixColumns=600)),
     "lost": ("such names", lambda at: beside(at, "7", b"", bare=True)), "text": ("such names", lambda at: beside(at, "7", b"no slice", bare=True)),
+    "patients": ("2 series", lambda at: slices(at, 4, lambda k: {"PatientID": f"p{k % 2}"})), "spaces": ("2 series", lambda at: slices(at, 4, lambda k: {"FrameOfReferenceUID": f"1.2.{k % 2 + 5}"})),
+    "drift": ("not evenly spaced", lambda at: slices(at, 9, lambda k: {"ImagePositionPatient": [-10, round(20 + 3.96 * k + 0.07 * max(0, k - 4), 3), 30]}, values=VALUES[[0] * 9])),
     "echoes": ("2 series", lambda at: slices(at, 4, lambda k: {"EchoTime": 10 + k % 2})), "frames_x": ("'-1' frames", lambda at: slices(at, NumberOfFrames=-1)),
     "more_bytes": ("bytes of pixels", lambda at: slices(at, PixelData=pixels(VALUES[:2]))), "words": ("big-endian", lambda at: slices(at, BitsAllocated=8, BitsStored=8, HighBit=7, PixelData=bytes(30), syntax=ExplicitVRBigEndian)),
     "detector": ("ImagerPixelSpacing", lambda at: slices(at, PixelSpacing="absent", ImagerPixelSpacing=[0.2, 0.3])), "tilt": ("gantry tilt", lambda at: slices(at, 4, shifted)),
