@@ -19,8 +19,8 @@ struct Magnet {
 };
 
 /// A bumpy surface by turning the contact force (bump mapping): a height field
-/// a/2 (sin(2 pi x / w) + sin(2 pi y / w) + sin(2 pi z / w)) fixed in physical space. Every plane has
-/// bumps. Across a coordinate axis they rise and fall by a.
+/// a/2 (sin(2 pi x / w) + sin(2 pi y / w) + sin(2 pi z / w)) fixed in physical space. Every plane
+/// has bumps. Across a coordinate axis they rise and fall by a.
 struct Texture {
     double amplitude = 0;   ///< a [mm of physical space] 0: off
     double wavelength = 2;  ///< w [mm of physical space]
