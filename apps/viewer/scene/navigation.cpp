@@ -71,15 +71,17 @@ Camera zoomed(const Camera& camera, const ViewSize& size, double factor, const P
 Camera whole(const Geometry& geometry, const pictures::View& view, const ViewSize& size) {
     Camera camera{physical_centre(geometry), view.towards_viewer, view.up, 1};
     const ViewAxes axes = axes_of(camera);
-    const Vec3 half = 0.5 * geometry.spacing.cwiseProduct(
-                                (geometry.size.array() - 1).max(1).matrix().cast<double>());
+    // With some margin, in which the box round the field lies as well, also that of a small grid.
+    constexpr double margin = 1.08, box_samples = 2.2;
+    const Vec3 samples = 0.5 * (geometry.size.array() - 1).max(1).cast<double>();
+    const Vec3 half = geometry.spacing.cwiseProduct(
+        (margin * samples).cwiseMax(samples + Vec3::Constant(box_samples)));
     // How far the box reaches along an axis of the picture.
     const auto reach = [&](const Vec3& axis) {
         return (geometry.direction.transpose() * axis).cwiseAbs().dot(half);
     };
     const double aspect = std::max(1.0, size.width) / std::max(1.0, size.height);
-    constexpr double margin = 1.08;
-    camera.half_height = margin * std::max(reach(axes.up), reach(axes.right) / aspect);
+    camera.half_height = std::max(reach(axes.up), reach(axes.right) / aspect);
     camera.towards_viewer = axes.towards_viewer;
     camera.up = axes.up;
     return camera;
