@@ -1,9 +1,6 @@
 // Converts between directions and the letters of the body's sides.
 #include "palpate/io/orientation.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <stdexcept>
 
 namespace palpate::io {
@@ -15,22 +12,14 @@ constexpr std::string_view positive = "LPS", negative = "RAI";
 }  // namespace
 
 std::string orientation_of(const Geometry& geometry) {
-    // Each axis gets another side: of the six orders, the one that is nearest to the directions.
-    std::array<int, 3> order{0, 1, 2}, best = order;
-    double most = -1;
-    do {
-        double sum = 0;
-        for (int axis = 0; axis < 3; ++axis) {
-            sum += std::abs(geometry.direction(order[static_cast<std::size_t>(axis)], axis));
-        }
-        if (sum > most) best = order;
-        most = std::max(most, sum);
-    } while (std::ranges::next_permutation(order).found);
     std::string letters;
+    Mat3 left = geometry.direction.cwiseAbs();  // of sides that no axis before runs to
     for (int axis = 0; axis < 3; ++axis) {
-        const int side = best[static_cast<std::size_t>(axis)];
-        const bool forwards = geometry.direction(side, axis) > 0;
-        letters += (forwards ? positive : negative)[static_cast<std::size_t>(side)];
+        Eigen::Index most = 0;
+        left.col(axis).maxCoeff(&most);
+        left.row(most).setConstant(-1);
+        const bool forwards = geometry.direction(most, axis) > 0;
+        letters += (forwards ? positive : negative)[static_cast<std::size_t>(most)];
     }
     return letters;
 }

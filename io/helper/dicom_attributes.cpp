@@ -11,6 +11,7 @@
 #include <sstream>
 #include <utility>
 
+#include "io/file_grid.hpp"
 #include "io/helper/dicom_time.hpp"
 #include "io/helper/headers.hpp"
 
@@ -37,9 +38,7 @@ void set_pixel_of_region(DicomSlice& s, const DicomGroup& data) {
         if (along_x != std::vector{centimetres} || along_y != along_x) continue;  // no lengths
         const Vec3 size(10 * std::abs(region.real({0x0018, 0x602c})),
                         10 * std::abs(region.real({0x0018, 0x602e})), 0);
-        if (!(size.head<2>().minCoeff() >= least_length && size.maxCoeff() <= greatest_length)) {
-            continue;
-        }
+        if (!is_file_spacing(size.x()) || !is_file_spacing(size.y())) continue;
         if (pixel && *pixel != size) {
             add_note(s.notes, "its regions have pixels of different sizes, which were not used");
             return;

@@ -109,7 +109,9 @@ class HttpObjects : public Objects {
             const std::string version = std::move(answers[i].version);
             if (wanted[i].identity) {
                 const auto size = answers[i].whole_size.value_or(answers[i].body.size());
-                *wanted[i].identity = version + std::to_string(size);
+                // A part tells no size where the server leaves it open.
+                const bool is_open = answers[i].status == 206 && !answers[i].whole_size;
+                *wanted[i].identity = version + (is_open ? "" : std::to_string(size));
             }
             all.push_back(body_of(wanted[i], std::move(answers[i])));
             if (!wanted[i].lasting && all.back()) remember(wanted[i].key, version, *all.back());

@@ -27,7 +27,8 @@ STEEP = palpate.Layers(layers=[palpate.Layer(name="a", level=ISOVALUE, propertie
 
 # Arguments that tell how fast, how often or how long something is done, or what a thing is called; and poses, which are data.
 OTHERS = {"progress", "threads", "name", "repeats", "seed", "history_bytes", "memory_bytes", "real_time", "rate", "device_rate", "slots",
-          "interval", "batch", "cold", "valid", "armed", "released", "pointing", "orientation_xyzw", "version", "solid"}
+          "interval", "batch", "cold", "valid", "armed", "released", "pointing", "orientation_xyzw", "start_orientation_xyzw",
+          "end_orientation_xyzw", "version", "solid"}
 # Tested in these files, which have files to read.
 ELSEWHERE = {"load series": "dicom_readers", "open_store channel": "readers", "open_store time": "stores",
              "LoadedVolume.__init__ level": "stores", "Store.read level": "stores",

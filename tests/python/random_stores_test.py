@@ -198,6 +198,10 @@ def ome_zarr(dice, folder):
     else:
         (path / "zarr.json").write_text(json.dumps({"zarr_format": 3, "node_type": "group",
                                                     "attributes": {"ome": {"version": "0.5", "multiscales": [image]}}}))
+    if max(LENGTHS[unit] * spacing[-3:].max() for spacing, _ in grids) > 1e9:
+        with pytest.raises(palpate.InputError, match="outside 1e-9 to 1e9 mm"):
+            palpate.open_store(path)
+        return
     store = palpate.open_store(path)
     assert len(store.levels) == 2
     for level, (spacing, first) in enumerate(grids):

@@ -48,8 +48,10 @@ TEST(RemoteFile, hdf5_and_tiff_are_read_where_a_server_tells_sizes_to_head_alone
         const fs::path& files = written_by(folder);
         const VolumeServer server({"--folder", files.string(), "--open-sizes"});
         expect_same_store(*open_store(files / name), *open_store(server.address(name), patient()));
-        const std::string message = message_of<io::InputError>(
-            [&] { (void)open_store(server.address("no_" + std::string(name))); });
+        const std::string message =
+            message_of<io::InputError>([&, missing = "no_" + std::string(name)] {
+                (void)open_store(server.address(missing));
+            });
         EXPECT_TRUE(contains(message, "does not exist")) << message;
     }
 }

@@ -1,4 +1,5 @@
 // Zarr and OME-Zarr against an independent writer and reader, and damaged stores.
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 
@@ -204,14 +205,17 @@ TEST(OmeZarr, an_axis_without_a_unit_has_that_of_the_others) {
                        R"({"zarr_format": 2, "shape": [2, 2, 2], "chunks": [2, 2, 2], )"
                        R"("dtype": "|u1", "compressor": null, "fill_value": 0, "order": "C", )"
                        R"("filters": null})");
+    const auto says = [](const Store& store, const char* words) {
+        return std::ranges::any_of(store.info().notes,
+                                   [&](const std::string& note) { return contains(note, words); });
+    };
     for (const std::string& z : {std::string(), std::string(R"(, "unit": "pixel")")}) {
         support::put_bytes(folder / "a.zarr/.zattrs", zattrs(z, um));
         const auto store = open_store(folder / "a.zarr");
         const Geometry& grid = store->info().levels.at(0).geometry;
         EXPECT_TRUE(grid.spacing.isApprox(Vec3(0.25e-3, 0.25e-3, 1e-3))) << grid.spacing;
         EXPECT_FALSE(grid.measured);
-        ASSERT_EQ(store->info().notes.size(), 1U);
-        EXPECT_TRUE(contains(store->info().notes[0], "its axis z has no unit of length"));
+        EXPECT_TRUE(says(*store, "its axis z has no unit of length"));
     }
     const std::string units = R"(, "units": "micrometer")";
     support::put_bytes(folder / "a.zarr/.zattrs", zattrs(units, units));
@@ -222,7 +226,7 @@ TEST(OmeZarr, an_axis_without_a_unit_has_that_of_the_others) {
     support::put_bytes(folder / "a.zarr/.zattrs", zattrs("", ""));
     const auto store = open_store(folder / "a.zarr");
     EXPECT_EQ(store->info().levels.at(0).geometry.spacing, Vec3(0.25, 0.25, 1));
-    EXPECT_TRUE(contains(store->info().notes.at(0), "mm were taken"));
+    EXPECT_TRUE(says(*store, "mm were taken"));
 }
 
 TEST(OmeZarr, a_spacing_that_is_given_is_that_of_the_finest_level) {

@@ -36,7 +36,7 @@ class Page : public QScrollArea {
         setWidgetResizable(true);
         setFrameShape(QFrame::NoFrame);
         setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-        setMinimumHeight(12 * fontMetrics().lineSpacing());  // the chart above gives its room
+        setMinimumHeight(8 * fontMetrics().lineSpacing());  // the chart above gives its room
         fit();
     }
 

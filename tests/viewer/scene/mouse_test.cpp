@@ -101,7 +101,8 @@ TEST(Navigation, a_thousand_turns_leave_a_camera_that_can_be_looked_through) {
     EXPECT_EQ(camera.focus, focus);
 }
 
-TEST(Navigation, the_whole_grid_is_inside_the_picture_and_fills_it) {
+/// Two samples outside the grid lies the box round a body that its border cuts.
+TEST(Navigation, the_box_round_the_grid_is_inside_the_picture_and_fills_it) {
     Random random(6);
     Mat3 mirrored = support::oblique_direction();
     mirrored.col(0) *= -1;
@@ -113,9 +114,9 @@ TEST(Navigation, the_whole_grid_is_inside_the_picture_and_fills_it) {
         const Camera camera = whole(geometry, {towards.towards_viewer, towards.up}, size);
         double widest = 0, highest = 0;
         for (int corner = 0; corner < 8; ++corner) {
-            const Vec3 index(corner & 1 ? geometry.size[0] - 1 : 0,
-                             corner & 2 ? geometry.size[1] - 1 : 0,
-                             corner & 4 ? geometry.size[2] - 1 : 0);
+            const Vec3 index(corner & 1 ? geometry.size[0] + 1 : -2,
+                             corner & 2 ? geometry.size[1] + 1 : -2,
+                             corner & 4 ? geometry.size[2] + 1 : -2);
             const Pixel seen = pixel_of(camera, size, physical_from_index(geometry, index));
             widest = std::max(widest, std::abs(seen.x - 200) / 200);
             highest = std::max(highest, std::abs(seen.y - 150) / 150);
