@@ -196,6 +196,10 @@ void Note::say(const QString& text) {
     }
 }
 
+static QString note_sign() {
+    return QString::fromUtf8("  ⓘ");
+}
+
 Section::Section(const QString& title, const QString& name, QWidget* content)
     : title_(title),
       heading_(named(new QToolButton, name + "_heading")),
@@ -210,8 +214,11 @@ Section::Section(const QString& title, const QString& name, QWidget* content)
     make_bold(*heading_);
     column_in(this, {heading_, content_})->setSpacing(2);
     connect(heading_, &QToolButton::toggled, this, &Section::set_open);
-    show_notes();
     set_open(true);
+    // Room for the sign of a note, so that nothing moves when one comes.
+    heading_->setText(title_ + note_sign());
+    heading_->setMinimumWidth(heading_->sizeHint().width());
+    show_notes();
 }
 
 void Section::set_open(bool open) {
@@ -225,7 +232,7 @@ void Section::show_notes() {
     for (const Note* note : findChildren<Note*>()) {
         if (!note->text().isEmpty()) lines << note->text();
     }
-    heading_->setText(lines.isEmpty() ? title_ : title_ + QString::fromUtf8("  ⓘ"));
+    heading_->setText(lines.isEmpty() ? title_ : title_ + note_sign());
     lines << tr("Fold this part away or back");
     heading_->setToolTip("<p>" + lines.join('\n').toHtmlEscaped().replace("\n", "</p><p>") +
                          "</p>");

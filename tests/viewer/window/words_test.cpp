@@ -4,6 +4,9 @@
 #include <QLabel>
 #include <QTextBrowser>
 
+#include <map>
+#include <utility>
+
 #include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/panel/layout.hpp"
 #include "viewer/window/window_fixture.hpp"
@@ -122,6 +125,16 @@ TEST_F(DrawnWords, leave_three_quarters_of_a_common_window_to_the_picture) {
     }
 }
 
+TEST_F(DrawnWords, leave_the_pages_eight_lines_of_a_small_window) {
+    window_->resize(1024, 700);
+    feel("synthetic:sphere:24x24x24");
+    wait_until_quiet(*window_);
+    EXPECT_LE(window_->height(), 700);
+    const QWidget& page = *part<QTabWidget>("tabs").currentWidget();
+    EXPECT_GE(page.height(), 8 * page.fontMetrics().lineSpacing());
+    save("small");
+}
+
 TEST_F(WordsInWindow, stay_in_their_place_when_the_hand_touches) {
     feel("synthetic:sphere:48x48x48");
     const auto places = [&] {
@@ -138,7 +151,33 @@ TEST_F(WordsInWindow, stay_in_their_place_when_the_hand_touches) {
     EXPECT_EQ(places(), before);
 }
 
-TEST_F(WordsInWindow, of_a_note_lie_over_the_picture) {
+/// Lines of all that is seen of the panel, by its names: the upper end and the height. Texts that
+/// change have other widths.
+std::map<QString, std::pair<int, int>> places_in(const QWidget& panel) {
+    std::map<QString, std::pair<int, int>> places;
+    for (const auto* one : panel.findChildren<QWidget*>()) {
+        if (!one->isVisible() || one->objectName().isEmpty() || qobject_cast<const Note*>(one)) {
+            continue;
+        }
+        places[one->objectName()] = {one->mapTo(&panel, QPoint()).y(), one->height()};
+    }
+    return places;
+}
+
+/// The same once the parts that were opened have found their places: texts that wrap take several
+/// rounds of events.
+std::map<QString, std::pair<int, int>> places_at_rest(MainWindow& window) {
+    std::map<QString, std::pair<int, int>> before, now = places_in(window.panel());
+    for (int same = 0; same < 3; same = now == before ? same + 1 : 0) {
+        before = std::move(now);
+        window.tick();
+        wait_until_quiet(window);
+        now = places_in(window.panel());
+    }
+    return now;
+}
+
+TEST_F(WordsInWindow, of_a_note_lie_over_the_picture_and_move_nothing_in_the_panel) {
     feel("synthetic:sphere:24x24x24");
     auto& tabs = part<QTabWidget>("tabs");
     int said = 0;
@@ -147,8 +186,7 @@ TEST_F(WordsInWindow, of_a_note_lie_over_the_picture) {
         for (auto* section : window_->findChildren<Section*>()) {
             section->set_open(section->objectName() != "loop_part");  // whose numbers change
         }
-        for (int i = 0; i < 8; ++i) window_->tick();
-        wait_until_quiet(*window_);
+        const auto before = places_at_rest(*window_);
         for (Note* note : window_->panel().findChildren<Note*>()) {
             if (!note->parentWidget()->isVisibleTo(&window_->panel())) continue;
             ++said;
@@ -157,6 +195,7 @@ TEST_F(WordsInWindow, of_a_note_lie_over_the_picture) {
             window_->tick();
             window_->tick();
             handle_events();
+            EXPECT_TRUE(places_at_rest(*window_) == before) << words.toStdString();
             EXPECT_TRUE(part<QLabel>("notes").isVisible());
             EXPECT_TRUE(part<QLabel>("notes").text().contains(words));
             note->say({});
@@ -176,10 +215,10 @@ TEST_F(WordsInWindow, of_a_refusal_are_seen_over_the_picture_until_they_are_clos
         QTest::keyClick(&box, Qt::Key_Return);
     };
     part<QAbstractButton>("penetrability").click();
-    for (int i = 0; i < 8; ++i) window_->tick();
-    wait_until_quiet(*window_);
+    const auto before = places_at_rest(*window_);
     type("-1");
     wait_until([&] { return notes.isVisible() && notes.text().contains("at least 0 mm"); });
+    EXPECT_TRUE(places_at_rest(*window_) == before);
     EXPECT_TRUE(part<QToolButton>("penetrability_part_heading").toolTip().contains("at least 0"));
     save("note");
     // The cross is at the end of its line.
