@@ -1,7 +1,6 @@
 """Images of nibabel are placed as their files, and the letters of an orientation are those of nibabel."""
 
 import contextlib
-import itertools
 import json
 import os
 import struct
@@ -49,5 +48,4 @@ def test_the_letters_of_an_orientation_name_three_sides(tmp_path):
         nibabel.save(nibabel.Nifti1Image(numpy.arange(120, dtype="i2").reshape(6, 5, 4), affine), path)
         described = json.loads(subprocess.run([os.environ["PALPATE"], "info", "--json", path], check=True, capture_output=True).stdout)
         letters = described["orientation"].replace(" ", "")
-        best = max(itertools.permutations(range(3)), key=lambda order: sum(abs(turn[side, axis]) for axis, side in enumerate(order)))
-        assert letters == "".join(("LR", "PA", "IS")[side][int(turn[side, axis] > 0)] for axis, side in enumerate(best)), case
+        assert letters == "".join(nibabel.aff2axcodes(affine)), case
