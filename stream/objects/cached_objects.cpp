@@ -1,6 +1,7 @@
 // Remote objects with a cache on the disk.
 #include <algorithm>
 #include <atomic>
+#include <random>
 #include <span>
 #include <string_view>
 
@@ -9,6 +10,11 @@
 
 namespace palpate::stream {
 namespace {
+
+std::string random_text() {
+    std::random_device device;
+    return std::to_string(device()) + ' ' + std::to_string(device());
+}
 
 class CachedObjects : public Objects {
   public:
@@ -27,7 +33,12 @@ class CachedObjects : public Objects {
     }
 
     std::string version() const override { return objects_->version(); }
-    std::string note() const override { return cache_.problem(); }
+    bool tells_changes() const override { return objects_->tells_changes(); }
+    std::string note() const override {
+        if (!cache_.problem().empty() || tells_changes()) return cache_.problem();
+        return "the server does not tell when its data change (neither ETag nor Last-Modified): "
+               "what the cache keeps is used in this session only";
+    }
 
     std::optional<Bytes> get(const Wanted& wanted, std::stop_token stop) const override {
         if (!wanted.lasting) return objects_->get(wanted, std::move(stop));
@@ -72,9 +83,11 @@ class CachedObjects : public Objects {
         return all;
     }
 
-    /// A store that is written anew does not meet the entries of the old one.
+    /// A store that is written anew does not meet the entries of the old one. Without a validator
+    /// an answer may not be used again later (RFC 9111, 4.3).
     std::string entry_name(const Wanted& wanted) const {
         std::string name = objects_->name_of(wanted.key) + '\n' + objects_->version();
+        if (!tells_changes()) name += "\nsession " + session_;
         if (wanted.identity) name += "\nwith identity";
         if (wanted.range) {
             name += '\n' + std::to_string(wanted.range->offset) +
@@ -85,6 +98,7 @@ class CachedObjects : public Objects {
 
     std::shared_ptr<const Objects> objects_;
     DiskCache cache_;
+    const std::string session_ = random_text();
     mutable std::atomic<std::uint64_t> found_ = 0;
 };
 

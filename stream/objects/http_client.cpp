@@ -367,8 +367,8 @@ class CurlClient : public HttpClient {
             job->answer.whole_size = static_cast<std::uint64_t>(length);
         }
         job->answer.too_long = job->too_long && !job->request.range;
-        job->answer.version =
-            header_of(easy, "ETag") + '\n' + header_of(easy, "Last-Modified") + '\n';
+        const std::string tag = header_of(easy, "ETag"), time = header_of(easy, "Last-Modified");
+        if (!tag.empty() || !time.empty()) job->answer.version = tag + '\n' + time + '\n';
         traffic_.request(job->answer.body.size());
         if (job->page_was_cut) code = CURLE_OK;  // its status says enough
         std::string wrong;

@@ -25,7 +25,7 @@ struct HttpAnswer {
     Bytes body;       ///< of 200 and 206
     /// [bytes] Of the object that a range or the size was asked of, where the server tells.
     std::optional<std::uint64_t> whole_size = std::nullopt;
-    std::string version;    ///< ETag and Last-Modified, as far as the server tells them
+    std::string version;    ///< ETag and Last-Modified; empty if the server tells neither
     std::string error;      ///< what went wrong after all attempts; empty: nothing
     bool too_long = false;  ///< an error: there are more bytes than asked for
 };

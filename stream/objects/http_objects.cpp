@@ -79,7 +79,10 @@ class HttpObjects : public Objects {
         const HttpRequest first = first_byte_of(url_of(key));
         HttpAnswer answer = std::move(client_->get({&first, 1}, stop_).front());
         const auto size = size_in(answer, first.url, stop_);
-        return body_of({.key = key}, std::move(answer)) ? size : std::nullopt;
+        const bool is_told = !answer.version.empty();
+        const bool is_there = body_of({.key = key}, std::move(answer)).has_value();
+        if (is_there && !is_told) tells_changes_ = false;
+        return is_there ? size : std::nullopt;
     }
 
     /// Signatures in the query change each time and do not belong to the object.
@@ -89,6 +92,8 @@ class HttpObjects : public Objects {
         for (const auto& [key, version] : versions_) all += '\n' + key + '\n' + version;
         return std::to_string(std::hash<std::string>{}(all));
     }
+
+    bool tells_changes() const override { return tells_changes_; }
 
     std::optional<Bytes> get(const Wanted& wanted, std::stop_token stop) const override {
         return std::move(get_all(std::array{wanted}, UINT64_MAX, std::move(stop)).front());
@@ -183,6 +188,7 @@ class HttpObjects : public Objects {
     void remember(const std::string& key, const std::string& version, const Bytes& bytes) const {
         const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
         const std::string now = version + std::to_string(std::hash<std::string_view>{}(text));
+        if (version.empty()) tells_changes_ = false;
         const std::lock_guard lock(mutex_);
         versions_[key] = now;
     }
@@ -217,7 +223,7 @@ class HttpObjects : public Objects {
     std::stop_token stop_;
     mutable std::mutex mutex_;
     mutable std::map<std::string, std::string> versions_;  // by key, of what is not lasting
-    mutable std::atomic<bool> knows_no_suffixes_{false};
+    mutable std::atomic<bool> knows_no_suffixes_{false}, tells_changes_{true};
     mutable TrafficCount traffic_;
     const std::unique_ptr<HttpClient> client_;
 };

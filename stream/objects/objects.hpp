@@ -65,6 +65,9 @@ class Objects {
     /// Of an object among all that have had its name; changes when what was read each time, not
     /// lasting, has changed: its bytes, or its version or time as a server tells them.
     virtual std::string version() const { return {}; }
+    /// Whether a change of the bytes always changes version(), as far as a server can tell it.
+    /// Otherwise only those of this session are known to be the same.
+    virtual bool tells_changes() const { return true; }
     /// A sentence for people, about how the objects are had. Usually empty.
     virtual std::string note() const { return {}; }
 };

@@ -375,5 +375,23 @@ TEST(DiskCache, a_store_that_is_written_anew_does_not_meet_the_old_entries) {
     EXPECT_EQ(volume_of(*open_store(server.address("a.zarr"), options)).minimum(), 'b');
 }
 
+TEST(DiskCache, of_a_server_that_does_not_tell_of_changes_it_serves_one_session) {
+    const ScratchFolder folder;
+    const VolumeServer server({"--folder", folder.path().string(), "--no-tags"});
+    fs::create_directories(folder / "a.zarr");
+    put_bytes(folder / "a.zarr/.zarray",
+              R"({"zarr_format":2,"shape":[2,4,4],"chunks":[2,4,4],"dtype":"|u1",)"
+              R"("compressor":null,"fill_value":0,"order":"C","filters":null})");
+    for (const char value : {'a', 'b'}) {
+        put_bytes(folder / "a.zarr/0.0.0", std::string(32, value));
+        const auto store = open_store(server.address("a.zarr"), cached(folder / "cache", 1 << 20));
+        const auto is_told = [](const std::string& note) { return contains(note, "ETag"); };
+        EXPECT_EQ(std::ranges::count_if(store->info().notes, is_told), 1);
+        EXPECT_EQ(volume_of(*store).minimum(), value);
+        EXPECT_EQ(volume_of(*store).minimum(), value);
+        EXPECT_EQ(store->traffic().cached, 1U) << "it is read again";
+    }
+}
+
 }  // namespace
 }  // namespace palpate::stream::test

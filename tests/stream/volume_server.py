@@ -183,10 +183,10 @@ def make_handler(options):
             if body is None:
                 return self.missing()
             status, body, headers = self.ranged(body)
-            if not path.startswith(name):
-                headers["ETag"] = tag_of(options.folder, path)
-                if options.long_tags:
-                    headers["ETag"] = '"' + "x" * 5000 + '"'
+            if not options.no_tags:
+                headers["ETag"] = '"1"' if path.startswith(name) else tag_of(options.folder, path)
+            if options.long_tags:
+                headers["ETag"] = '"' + "x" * 5000 + '"'
             if options.gzip and status == 200:
                 body = gzip.compress(body)
                 headers["Content_Encoding"] = "gzip"
@@ -260,6 +260,7 @@ def main():
     parser.add_argument("--open-sizes", action="store_true", help="sizes for HEAD alone, not with ranges")
     parser.add_argument("--other-range", action="store_true", help="a byte too early, and says so")
     parser.add_argument("--other-suffix", action="store_true", help="the begin for ranges from the end")
+    parser.add_argument("--no-tags", action="store_true", help="neither ETag nor Last-Modified")
     parser.add_argument("--long-tags", action="store_true", help="ETags of 5000 characters")
     parser.add_argument("--gzip", action="store_true", help="Content-Encoding: gzip for whole files")
     parser.add_argument("--missing", default="404",
