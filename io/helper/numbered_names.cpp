@@ -242,9 +242,38 @@ std::vector<Field> counting_slices(const std::vector<Field>& fields, std::size_t
     return found.empty() ? std::vector<Field>{} : found.begin()->second;
 }
 
+/// "7" for "007".
+std::string without_zeros(const std::string& number) {
+    const std::size_t point = std::min(number.find('.'), number.size());
+    const bool is_negative = number.front() == '-';
+    const std::size_t digits = number.find_first_not_of('0', is_negative ? 1 : 0);
+    if (digits >= point) return "0" + number.substr(point);
+    return (is_negative ? "-" : "") + number.substr(digits);
+}
+
+/// Throws Failure if numbers tell slices apart, but two files have the same: which one is the slice?
+void check_twice(const std::vector<NamedFile>& files, bool is_counted) {
+    std::map<std::vector<std::string>, std::string> names;  // by their numbers
+    std::string twice;
+    for (const NamedFile& file : files) {
+        std::vector<std::string> numbers;
+        for (const NamePart& part : file.name) {
+            if (part.is_number) numbers.push_back(without_zeros(part.text));
+        }
+        if (numbers.empty()) continue;
+        const std::string name = file.path.filename().string();
+        const auto [found, is_new] = names.emplace(std::move(numbers), name);
+        if (!is_new && twice.empty()) twice = "'" + found->second + "' and '" + name + "'";
+    }
+    if (twice.empty() || (names.size() == 1 && !is_counted)) return;
+    throw Failure("two of its slices have the same numbers in their names (" + twice +
+                  "); put the slices of one volume into a folder of their own");
+}
+
 /// All files, in the order of the numbers that count slices. Without any, in that of their names.
 NumberedSlices one_stack(std::vector<NamedFile> files, const std::vector<Field>& fields) {
     const std::vector<Field> counting = counting_slices(fields, files.size(), files.front().name);
+    check_twice(files, !counting.empty());
     for (const Field& field : counting) {
         if (&field == &counting.front()) std::ranges::sort(files, by_value_of(field));
         if (!std::ranges::is_sorted(files, by_value_of(field))) {

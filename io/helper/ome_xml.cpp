@@ -159,6 +159,7 @@ void set_spacing(OmeImage& image, const Vec3& spacings, const std::array<std::st
     const auto is_length = [](double length) { return std::isfinite(length) && length > 0; };
     const bool has_distance = is_length(spacings[2]);
     image.spacing_note.clear();
+    image.distance_note.clear();
     const bool measured = x && y && (z || !has_distance);
     const bool alike = units[0] == units[1] && (units[0] == units[2] || !has_distance);
     if (!is_length(spacings[0]) || !is_length(spacings[1]) || (!measured && (x || !alike))) {
@@ -175,8 +176,8 @@ void set_spacing(OmeImage& image, const Vec3& spacings, const std::array<std::st
                                                : " has the unit '" + units[0].substr(0, 40) +
                                                      "', which is no length") +
                              ": 1 mm was taken along x, and along the other axes in proportion";
-    } else if (!has_distance && image.sizes[0] > 1) {
-        image.spacing_note =
+    } else if (!has_distance) {
+        image.distance_note =
             source + " does not tell the distance between slices: that of pixels was taken";
     }
 }

@@ -18,10 +18,15 @@ struct OmeImage {
     std::string type;                               ///< of the samples; empty: it does not say
     std::array<double, 3> spacing = {1, 1, 1};      ///< z, y, x [mm]
     std::string spacing_note;                       ///< what was chosen; to be said if it is used
+    std::string distance_note;                      ///< the same, if there are several slices
     std::vector<std::string> channels;              ///< names; empty: one
     double frame_interval = 0;                      ///< [s]; 0: it does not say
     std::vector<std::uint32_t> pages;               ///< of each plane
 
+    /// What was chosen of the spacing of so many slices; empty: nothing.
+    const std::string& note_on_spacing(std::int64_t slices) const {
+        return spacing_note.empty() && slices > 1 ? distance_note : spacing_note;
+    }
     /// Its place in `pages`: z fastest, then channels.
     std::size_t plane(std::int64_t z, std::int64_t channel, std::int64_t time) const {
         return static_cast<std::size_t>((time * sizes[1] + channel) * sizes[0] + z);

@@ -127,8 +127,9 @@ ChunkedImage tiff_image(const fs::path& path, int channel, int time) {
     ChunkedImage found;
     found.notes = notes;
     const OmeImage& image = layout.image;
-    found.measured = image.spacing_note.empty();
-    if (!found.measured) found.notes.push_back(image.spacing_note);
+    const std::string& note = image.note_on_spacing(image.sizes[0]);
+    found.measured = note.empty();
+    if (!found.measured) found.notes.push_back(note);
     found.format = image.format;
     found.unit = "millimeter";
     found.channels = image.channels;

@@ -215,7 +215,7 @@ Result read_slices(const std::vector<Slice>& slices, const TiffLayout& layout,
                             static_cast<int>(slices.size())};
     const auto& spacing = layout.image.spacing;
     result.geometry.spacing = {spacing[2], spacing[1], spacing[0]};
-    const std::string& note = layout.image.spacing_note;
+    const std::string& note = layout.image.note_on_spacing(std::ssize(slices));
     if (!request.grid.spacing && !note.empty()) result.notes.push_back(note);
     result.geometry.oriented = false;
     result.geometry.measured = note.empty();
@@ -233,18 +233,39 @@ void note_stick(Result& result) {
                            "(ImageJ: Image > Properties, frames) and it is a sequence");
 }
 
-/// Spacing and values from the first file of a folder. The names of the files give the order.
-TiffLayout layout_of_folder(const fs::path& first, std::vector<std::string>& notes) {
-    const Tiff tiff = open_to_read(first);
-    if (!is_ome_xml(description_of(tiff.get()))) {
-        TiffLayout layout = layout_of(tiff.get(), first, notes);
+/// Spacing and values of a file in a folder. The names of the files give the order.
+TiffLayout layout_in_folder(TIFF* tiff, const fs::path& file, std::vector<std::string>& notes) {
+    if (!is_ome_xml(description_of(tiff))) {
+        TiffLayout layout = layout_of(tiff, file, notes);
         if (layout.plain_from == 0) return layout;
-        throw Failure(quoted(first) + " is a stack in a folder of slices; give that file alone");
+        throw Failure(quoted(file) + " is a stack in a folder of slices; give that file alone");
     }
     notes.emplace_back(
         "the OME-XML of its files was not used: they were put together by the numbers in their "
-        "names, 1 mm apart along every axis");
-    return {};
+        "names");
+    TiffLayout layout;
+    layout.image.spacing_note =
+        "without the OME-XML, 1 mm was taken along every axis; give the spacing";
+    return layout;
+}
+
+/// One spacing and one meaning of the samples hold for the whole stack.
+void check_alike(const TiffLayout& first, const TiffLayout& one, const fs::path& file,
+                 const Request& request) {
+    constexpr double rounding = 1e-3;
+    if (one.values.slope != first.values.slope || one.values.intercept != first.values.intercept) {
+        throw Failure(quoted(file) + " has another calibration of its values (c0, c1) than the first "
+                      "slice; save all slices with one calibration, or without any");
+    }
+    const bool are_known = one.image.spacing_note.empty() && first.image.spacing_note.empty();
+    if (!are_known || request.grid.spacing) return;
+    const auto &a = first.image.spacing, &b = one.image.spacing;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (std::abs(b[axis] - a[axis]) <= rounding * a[axis]) continue;
+        throw Failure(quoted(file) + " has a spacing of " + text_of(b[axis]) + " mm along " +
+                      "zyx"[axis] + ", the first slice of " + text_of(a[axis]) +
+                      " mm; give the spacing (--spacing) if it is the same for all");
+    }
 }
 
 Result read_file(const Request& request) {
@@ -283,8 +304,11 @@ Result read_folder(const Request& request) {
     const auto times = static_cast<std::int64_t>(numbered.times.size());
     const int step = checked_time_step(request, times);
     std::vector<Slice> slices;
+    std::vector<std::string> notes = numbered.notes;
+    std::optional<TiffLayout> layout;  // of the first
     for (const fs::path& file : numbered.times[static_cast<std::size_t>(step)]) {
-        const TiffPages pages = pages_of(open_to_read(file).get(), file);
+        const Tiff tiff = open_to_read(file);
+        const TiffPages pages = pages_of(tiff.get(), file);
         if (pages.whole.size() != 1 && numbered.times[0].size() * numbered.times.size() > 1) {
             throw Failure(quoted(file) + " has " + std::to_string(pages.whole.size()) +
                           " pages in a folder of slices; give that file alone");
@@ -292,10 +316,13 @@ Result read_folder(const Request& request) {
         for (const std::uint32_t page : pages_of_first_series(pages)) {
             slices.push_back({file, page});
         }
+        TIFFSetDirectory(tiff.get(), 0);
+        std::vector<std::string> of_others;
+        const TiffLayout one = layout_in_folder(tiff.get(), file, layout ? of_others : notes);
+        if (layout) check_alike(*layout, one, file, request);
+        if (!layout) layout = one;
     }
-    std::vector<std::string> notes = numbered.notes;
-    const TiffLayout layout = layout_of_folder(slices.front().file, notes);
-    Result result = read_slices(slices, layout, request);
+    Result result = read_slices(slices, *layout, request);
     result.format = "TIFF slices";
     result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
     take_step(request, times, {}, result);

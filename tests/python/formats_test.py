@@ -162,7 +162,7 @@ def test_names_of_slices_that_leave_a_doubt_are_refused(tmp_path, names, words):
     (["a9", "a10", "a11"], ""), (["s1_1", "s1_2", "s2_3", "s2_4"], ""), (["0001_z1.25", "0001_z1.5", "0001_z2.0"], ""),
     (["20240101_120301_001", "20240101_120305_002", "20240101_120311_003"], ""), (["scan.001.0001", "scan.001.0002"], ""),
     (["z1_t1200", "z2_t1200", "z3_t1201"], ""), (["a", "b", "c"], ""), (["one", "slice1", "slice2"], "not alike"),
-    (["t1", "t2", "t3"], "count times"), (["01", "1", "2"], ""), (["1", "3", "5"], "")))
+    (["t1", "t2", "t3"], "count times"), (["s1_a", "s1_b"], ""), (["1", "3", "5"], "")))
 def test_numbers_that_go_together_are_slices(tmp_path, names, note):
     values, notes = slices_of(folder(tmp_path / "a", names))
     assert values == list(range(len(names)))
@@ -175,6 +175,43 @@ def test_numbers_that_go_together_are_slices(tmp_path, names, note):
     (["1", "9000000000000000000", "9000000000000000001"], "are missing")))
 def test_a_folder_that_lacks_slices_is_refused(tmp_path, names, words):
     refused(folder(tmp_path / "a", names), words, "copy the missing slices")
+
+
+@pytest.mark.parametrize("names", (["s1", "s01", "s2"], ["s1", "s01"], ["img_0", "img_0_mask", "img_1", "img_1_mask"]))
+def test_a_number_that_two_slices_have_is_refused(tmp_path, names):
+    refused(folder(tmp_path / "a", names), "the same numbers", "folder of their own")
+
+
+def calibrated(path, *slices):
+    """A folder of slices as ImageJ writes them, each with lines of its own and so many pixels per micrometre."""
+    path.mkdir()
+    for z, (lines, resolution) in enumerate(slices):
+        tifffile.imwrite(path / f"s{z}.tif", numpy.full((4, 6), 10 * z, "u1"), photometric="minisblack", metadata=None,
+                         description="ImageJ=1.53t\nunit=um\n" + lines, resolution=resolution)
+    return path
+
+
+def test_a_folder_of_slices_without_a_distance_has_no_known_spacing(tmp_path):
+    loaded = palpate.load(calibrated(tmp_path / "a", ("", (2, 2)), ("", (2, 2))))
+    assert not loaded.volume.geometry.measured and "distance between slices" in " ".join(loaded.notes)
+    told = palpate.load(calibrated(tmp_path / "b", ("spacing=3\n", (2, 2)), ("spacing=3\n", (2, 2)))).volume.geometry
+    assert told.measured and numpy.allclose(told.spacing, (5e-4, 5e-4, 3e-3))
+    ome = tmp_path / "c"
+    ome.mkdir()
+    for z in range(2):
+        tifffile.imwrite(ome / f"s{z}.ome.tif", numpy.full((4, 6), z, "u1"), metadata={"axes": "YX", "PhysicalSizeX": 0.5})
+    loaded = palpate.load(ome)
+    assert not loaded.volume.geometry.measured and "without the OME-XML, 1 mm" in " ".join(loaded.notes)
+
+
+def test_slices_of_several_calibrations_are_refused(tmp_path):
+    line = "spacing=2\ncf=0\nc0=0\nc1={}\n".format
+    refused(calibrated(tmp_path / "a", (line(1), (2, 2)), (line(2), (2, 2))), "'s1.tif' has another calibration")
+    values, _ = slices_of(calibrated(tmp_path / "b", (line(3), (2, 2)), (line(3), (2.0001, 2))))
+    assert values == [0, 30]
+    other = calibrated(tmp_path / "c", ("spacing=2\n", (2, 2)), ("spacing=2\n", (2, 3)))
+    refused(other, "'s1.tif' has a spacing of 0.000333333 mm along y, the first slice of 0.0005 mm", "give the spacing")
+    assert numpy.allclose(palpate.load(other, spacing=(1, 2, 3)).volume.geometry.spacing, (1, 2, 3))
 
 
 SCIFIO = "SCIFIO=0.37.3\naxes=X,Y,{}\nlengths=6,4,{}\nscales=0.5,0.25,{}\nunits=micron,micron,{}\n"
