@@ -40,9 +40,9 @@ struct ForceRows {
         {"dynamic_friction", 1.5, 0.05, QT_TR_NOOP("Dynamic friction"),
          QT_TR_NOOP("Coefficient while the proxy slides, at most the static one (no unit)")},
         {"texture_amplitude", 0.5, 0.01, QT_TR_NOOP("Texture height"),
-         QT_TR_NOOP("Height of the bumps [mm in the volume]; 0: smooth")},
+         QT_TR_NOOP("Height of the bumps in the volume; 0: smooth")},
         {"texture_wavelength", 20, 0.5, QT_TR_NOOP("Texture length"),
-         QT_TR_NOOP("From bump to bump [mm in the volume]")},
+         QT_TR_NOOP("From bump to bump in the volume")},
         {"magnet_distance", 10, 0.5, QT_TR_NOOP("Magnet reach"),
          QT_TR_NOOP("From how far a free hand is pulled to the surface [mm of the hand]; 0: off")},
         {"magnet_peak", 1, 0.1, QT_TR_NOOP("Magnet force"),
@@ -100,13 +100,15 @@ class ForceControls : public EffectForm {
         each_time(this, [this](QWidget&) { set_ends(); });
         for (const RowWords& words : ForceRows::all) {
             const auto& [path, unit, range] = numbers.at(words.name);
-            auto* row =
-                quantity_in(words.plain ? *plain_form : *advanced_form,
-                            {words.name, ForceRows::tr(words.label), ForceRows::tr(words.tip)},
-                            {QString(unit).remove("device ").remove(", physical"),
-                             range.has(0) ? 0 : words.step, words.high, words.step},
-                            {[this, path = path] { return number_at(path); },
-                             [this, path = path](double value) { change(path, value); }});
+            QFormLayout& form = words.plain ? *plain_form : *advanced_form;
+            const Words shown{words.name, ForceRows::tr(words.label), ForceRows::tr(words.tip)};
+            const Span span{QString(unit).remove("device ").remove(", physical"),
+                            range.has(0) ? 0 : words.step, words.high, words.step};
+            const Value<double> value{[this, path = path] { return number_at(path); },
+                                      [this, path = path](double to) { change(path, to); }};
+            auto* row = QString(unit).endsWith(", physical")
+                            ? length_in(form, shown, span, value)
+                            : quantity_in(form, shown, span, value);
             row->box().set_infinite(range.has(ranges::infinity));
         }
         auto* fold = new Section(tr("Advanced"), "force_advanced", advanced);

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "apps/viewer/model/measurement.hpp"
+
 namespace palpate::viewer {
 namespace {
 
@@ -102,6 +104,17 @@ EffectForm::EffectForm(Effect& effect) : effect_(effect) {
         clear();
         refresh();
     });
+}
+
+Quantity* EffectForm::length_in(QFormLayout& form, const Words& words, const Span& span,
+                                Value<double> value) {
+    Quantity* row = quantity_in(form, words, span, std::move(value));
+    connect(&effect_, &Effect::begun, row, [this, row, low = span.low, high = span.high] {
+        const Ruler ruler = ruler_of(effect_.field().geometry());
+        row->set_unit(QCoreApplication::translate("Units", ruler.unit), ruler.per_mm);
+        row->set_ends(low / ruler.per_mm, high / ruler.per_mm);
+    });
+    return row;
 }
 
 namespace {

@@ -136,6 +136,10 @@ class EffectForm : public Form {
     virtual void begin() {}
     /// There is none any more.
     virtual void clear() {}
+    /// A length in the volume: `span` is for volumes in mm, others have the unit of their
+    /// positions.
+    Quantity* length_in(QFormLayout& form, const Words& words, const Span& span,
+                        Value<double> value);
 
     Effect& effect_;
 };

@@ -197,7 +197,7 @@ void Note::say(const QString& text) {
 }
 
 static QString note_sign() {
-    return QString::fromUtf8("  ⓘ");
+    return QString::fromUtf8("  ℹ");
 }
 
 Section::Section(const QString& title, const QString& name, QWidget* content)

@@ -85,16 +85,16 @@ Der Schieber endet, wo Gerät und Regelkreis sie nicht mehr stabil wiedergeben k
         <translation>Texturhöhe</translation>
     </message>
     <message>
-        <source>Height of the bumps [mm in the volume]; 0: smooth</source>
-        <translation>Höhe der Unebenheiten [mm im Volumen]; 0: glatt</translation>
+        <source>Height of the bumps in the volume; 0: smooth</source>
+        <translation>Höhe der Unebenheiten im Volumen; 0: glatt</translation>
     </message>
     <message>
         <source>Texture length</source>
         <translation>Texturlänge</translation>
     </message>
     <message>
-        <source>From bump to bump [mm in the volume]</source>
-        <translation>Von Unebenheit zu Unebenheit [mm im Volumen]</translation>
+        <source>From bump to bump in the volume</source>
+        <translation>Von Unebenheit zu Unebenheit im Volumen</translation>
     </message>
     <message>
         <source>Magnet reach</source>
@@ -1714,8 +1714,8 @@ Jetzt aus dem Wert der Sitzung (Kraft)</translation>
         <translation>Schließt nach</translation>
     </message>
     <message>
-        <source>A surface that gave way closes when the proxy is farther than this from where it did [mm of the data]</source>
-        <translation>Eine Fläche, die nachgab, schließt sich, wenn der Proxy weiter als so von der Stelle entfernt ist [mm der Daten]</translation>
+        <source>A surface that gave way closes when the proxy is farther than this from where it did, in the volume</source>
+        <translation>Eine Fläche, die nachgab, schließt sich, wenn der Proxy im Volumen weiter als so von der Stelle entfernt ist</translation>
     </message>
     <message>
         <source>Distance at which surfaces close</source>
@@ -2130,8 +2130,8 @@ Wählen Sie die Ebene noch einmal, damit sie zu Ihnen zeigt.</translation>
         <translation>Maßstab</translation>
     </message>
     <message>
-        <source>A length in the picture [mm]</source>
-        <translation>Eine Länge im Bild [mm]</translation>
+        <source>A length in the picture</source>
+        <translation>Eine Länge im Bild</translation>
     </message>
     <message>
         <source>Slices&apos; colours</source>
@@ -2620,10 +2620,6 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
     <message>
         <source>Settings of the &amp;next hand</source>
         <translation>Einstellungen der &amp;nächsten Hand</translation>
-    </message>
-    <message>
-        <source>The proxy: where it is, the sample there and its slope</source>
-        <translation>Der Proxy: wo er ist, der Wert dort und dessen Steigung</translation>
     </message>
     <message>
         <source>%1 %2   slope %3 /%4</source>
@@ -3455,6 +3451,13 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <source>L %1</source>
         <comment>level, in the corner</comment>
         <translation>L %1</translation>
+    </message>
+</context>
+<context>
+    <name>palpate::viewer::StatusBar</name>
+    <message>
+        <source>The proxy: where it is, the sample there and its slope</source>
+        <translation>Der Proxy: wo er ist, der Wert dort und dessen Steigung</translation>
     </message>
 </context>
 <context>

@@ -208,6 +208,7 @@ void Hints::observe(const HandSnapshots& hands, bool brush) {
                                                  : QString();
     // Below the notes and the clock.
     const int top = notes_->isHidden() ? 0 : notes_->height();
+    views_.place_missing(top);
     say(*reason_, reason, pane, {pane.width() / 2, top + 2 * line});
     say(*brush_,
         live && brush ? tr("The brush is on: it changes what it touches (B: off)") : QString(),

@@ -30,7 +30,7 @@ QWidget* LayersControls::make_choice() {
     let_wheel_pass(*choice_);
     choice_->setAccessibleName(tr("Layers"));
     choice_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-    choice_->setMinimumContentsLength(12);
+    choice_->setMinimumContentsLength(6);
     connect(choice_, qOverload<int>(&QComboBox::activated), this, &LayersControls::choose_set);
     auto* open = button(
         {"open_layers", tr("Open…"), tr("A set of layers from a file (JSON)"), tr("Open layers")},
@@ -270,12 +270,12 @@ QWidget* LayersControls::make_never(Quantity& puncture) {
 QWidget* LayersControls::make_needle() {
     auto *both = new QWidget, *numbers = new QWidget;
     auto *form = form_in(both), *rows = form_in(numbers);
-    quantity_in(*form,
-                {"layers_closing", tr("Closes after"),
-                 tr("A surface that gave way closes when the proxy is farther than this from where "
-                    "it did [mm of the data]"),
-                 tr("Distance at which surfaces close")},
-                {"mm", 0.1, 20, 0.1, Quantity::Scale::factors}, whole("closing")[&Layers::closing]);
+    length_in(*form,
+              {"layers_closing", tr("Closes after"),
+               tr("A surface that gave way closes when the proxy is farther than this from where "
+                  "it did, in the volume"),
+               tr("Distance at which surfaces close")},
+              {"mm", 0.1, 20, 0.1, Quantity::Scale::factors}, whole("closing")[&Layers::closing]);
     const auto needle = whole("needle")[&Layers::needle];
     form->addRow(check(
         {"needle", tr("Needle"),

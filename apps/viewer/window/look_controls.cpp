@@ -231,7 +231,7 @@ QWidget* LookControls::make_rest() {
         {&Look::box, "box", tr("Box"), tr("The bounds of the data")},
         {&Look::orientation, "orientation", tr("Orientation cube"),
          tr("L, R, A, P, S, I: sides of the body")},
-        {&Look::scale_bar, "scale_bar", tr("Scale bar"), tr("A length in the picture [mm]")}};
+        {&Look::scale_bar, "scale_bar", tr("Scale bar"), tr("A length in the picture")}};
     auto* all = column_of({});
     all->layout()->setSpacing(2);
     for (const auto& [shown, name, text, tip] : switches) {

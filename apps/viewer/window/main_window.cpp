@@ -16,7 +16,6 @@
 #include <QMimeData>
 #include <QScreen>
 #include <QSettings>
-#include <QStatusBar>
 #include <QUrl>
 
 #include <algorithm>
@@ -40,6 +39,7 @@
 #include "apps/viewer/window/menus.hpp"
 #include "apps/viewer/window/overlay_controls.hpp"
 #include "apps/viewer/window/panel.hpp"
+#include "apps/viewer/window/status_bar.hpp"
 #include "apps/viewer/window/tool_controls.hpp"
 #include "apps/viewer/window/views.hpp"
 #include "apps/viewer/window/welcome.hpp"
@@ -66,8 +66,8 @@ MainWindow::MainWindow(const RunRequest& request, MakePainter make_painter)
       views_(new Views(std::move(make_painter), this)),
       welcome_(new Welcome(this)),
       timeline_(new Timeline(this)),
+      status_(new StatusBar(this)),
       streaming_(new QLabel),
-      readout_(new QLabel),
       frame_time_(new QLabel),
       messages_(this),
       desk_(content_, messages_, *views_),
@@ -119,19 +119,12 @@ void MainWindow::build() {
     dock_ = named(new QDockWidget(tr("Feel and look")), "dock");
     dock_->setWidget(panel_);
     addDockWidget(Qt::RightDockWidgetArea, dock_);
+    setStatusBar(status_);
     streaming_->setObjectName("streaming");
-    statusBar()->addPermanentWidget(streaming_);
-    readout_->setObjectName("readout");
-    readout_->setIndent(fontMetrics().height());  // apart from a message that is cut off
-    readout_->setToolTip(tr("The proxy: where it is, the sample there and its slope"));
-    statusBar()->addPermanentWidget(readout_);
+    status_->insertPermanentWidget(0, streaming_);
     frame_time_->setObjectName("frames");
-    statusBar()->addPermanentWidget(frame_time_);
-    connect(statusBar(), &QStatusBar::messageChanged, this, [this](const QString& what) {
-        // A narrow window cuts a long message off.
-        statusBar()->setToolTip(what.isEmpty() ? "" : "<p>" + what.toHtmlEscaped() + "</p>");
-    });
-    statusBar()->showMessage(tr("Open a volume, or drop one here (Ctrl+O); ? lists the shortcuts"));
+    status_->addPermanentWidget(frame_time_);
+    status_->showMessage(tr("Open a volume, or drop one here (Ctrl+O); ? lists the shortcuts"));
 }
 
 void MainWindow::connect_parts() {
@@ -169,7 +162,7 @@ void MainWindow::connect_parts() {
 void MainWindow::show_note(const QString& what) {
     if (notes_.isEmpty()) QTimer::singleShot(0, this, [this] { notes_.clear(); });
     notes_.prepend(what);
-    statusBar()->showMessage(notes_.join("; "), message_ms);
+    status_->showMessage(notes_.join("; "), message_ms);
 }
 
 /// It stands in for the views while nothing is open.
@@ -315,7 +308,7 @@ void MainWindow::tick() {
 /// Position, value and gradient at the proxy.
 void MainWindow::show_readout(const Snapshot& now) {
     const Vec3& at = now.session.tick.proxy.scp;
-    if (!at.allFinite()) return readout_->clear();
+    if (!at.allFinite()) return status_->show_readout({});
     const QString units = QString::fromStdString(content_.volume()->loaded.values.units);
     const Ruler ruler = ruler_of(content_.volume()->loaded.volume.geometry());
     const auto number = [&](double mm) { return QString::fromStdString(ruler.number(mm)); };
@@ -329,7 +322,7 @@ void MainWindow::show_readout(const Snapshot& now) {
                  tr("%1 %2   slope %3 /%4")
                      .arg(number_text(value_at(*field, at), 4), units, number_text(slope, 3), unit);
     }
-    readout_->setText(words);
+    status_->show_readout(words);
 }
 
 /// Shows levels and missing data of a store. Unchanged words are not drawn again.

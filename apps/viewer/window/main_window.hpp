@@ -27,6 +27,7 @@ class QLabel;
 namespace palpate::viewer {
 
 class Panel;
+class StatusBar;
 class Timeline;
 class Views;
 class Welcome;
@@ -118,7 +119,8 @@ class MainWindow : public QMainWindow {
     Views* views_;
     Welcome* welcome_;
     Timeline* timeline_;
-    QLabel *streaming_, *readout_, *frame_time_;
+    StatusBar* status_;
+    QLabel *streaming_, *frame_time_;
     Messages messages_;
     Desk desk_;
     Panel* panel_;

@@ -29,12 +29,11 @@ Views::Views(MakePainter make_painter, QWidget* parent)
       scene_(new Scene(nullptr, std::move(make_painter))),
       slices_{new SlicePane(0), new SlicePane(1), new SlicePane(2)},
       by_body_(slices_),
-      missing_(named(new QPushButton, "missing_grid")),
+      missing_(named(new QPushButton(scene_), "missing_grid")),
       across_(new QSplitter(Qt::Horizontal)),
       left_(new QSplitter(Qt::Vertical)),
       down_(new QSplitter(Qt::Vertical)) {
-    // Above the panes, so that it covers no words of theirs.
-    column_in(this, {missing_, across_})->setAlignment(missing_, Qt::AlignLeft);
+    column_in(this, {across_});
     scene_->setObjectName("scene");
     scene_->setMinimumSize(200, 200);
     left_->addWidget(scene_);
@@ -64,6 +63,7 @@ Views::Views(MakePainter make_painter, QWidget* parent)
     missing_->setStyleSheet(
         "QPushButton { background-color: #ffb000; color: black; border-radius: 4px; "
         "padding: 3px 8px; }");
+    missing_->setCursor(Qt::ArrowCursor);
     missing_->hide();
     connect(missing_, &QPushButton::clicked, this, &Views::missing_asked);
 }
@@ -73,6 +73,18 @@ void Views::set_missing(const QString& words, const QString& tip) {
     missing_->setToolTip(tip);
     missing_->setAccessibleName(tip);
     missing_->setVisible(!words.isEmpty());
+}
+
+void Views::place_missing(int top) {
+    QWidget& pane = main_pane();
+    if (missing_->parentWidget() != &pane) {
+        missing_->setParent(&pane);
+        missing_->setVisible(!missing_->text().isEmpty());
+    }
+    if (missing_->isHidden()) return;
+    missing_->resize(missing_->sizeHint().boundedTo(pane.size()));
+    const int letters = 2 * pane.fontMetrics().height();
+    missing_->move(0, &pane == scene_ ? top : pane.height() - missing_->height() - letters);
 }
 
 /// The picture is coarser than the touched surface.

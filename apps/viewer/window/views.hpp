@@ -38,8 +38,11 @@ class Views : public QWidget {
     /// The crosshair follows the probe, once it has touched something.
     void set_follow(bool follow) { follow_ = follow; }
     bool follows() const { return follow_; }
-    /// What the files do not say of a grid, on a button over the panes; empty: none.
+    /// What the files do not say of a grid, on a button over the main pane; empty: none.
     void set_missing(const QString& words, const QString& tip);
+    /// Puts that button `top` pixels below the upper edge of the scene, or over the lower edge of a
+    /// slice that is alone, whose words are above.
+    void place_missing(int top);
     void show_slices(bool shown);
     bool slices_shown() const { return slices_shown_; }
     /// Beside: the slices in a column beside the scene. Four: all panes of the same size, the

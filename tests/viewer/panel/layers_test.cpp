@@ -40,6 +40,17 @@ TEST_F(LayersPart, a_choice_is_one_command_and_none_goes_back_to_the_isovalue) {
     EXPECT_TRUE(find<QLabel>("layers_note")->text().isEmpty());
 }
 
+TEST_F(LayersPart, undo_and_redo_stand_beside_the_choice_in_the_narrowest_panel) {
+    panel.resize(panel.minimumSizeHint().width(), 1450);
+    settle();
+    auto* box = find<QComboBox>("layers");
+    for (const char* name : {"undo_layers", "redo_layers"}) {
+        const auto* one = find<QPushButton>(name);
+        EXPECT_LE(one->y(), box->geometry().center().y()) << name;
+        EXPECT_GT(one->x(), box->x()) << name;
+    }
+}
+
 TEST_F(LayersPart, a_refused_set_is_not_shown_as_chosen) {
     refuse_with = "layers need the method exact";
     choose(1);

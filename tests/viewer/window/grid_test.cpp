@@ -7,9 +7,12 @@
 #include <QPointer>
 #include <QPushButton>
 #include <QRegularExpression>
+#include <QSlider>
 #include <QStatusBar>
 
 #include "apps/viewer/model/session_file.hpp"
+#include "apps/viewer/panel/inputs.hpp"
+#include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/slices/plane.hpp"
 #include "palpate/io/volume_file.hpp"
 #include "palpate/scenes/volumes.hpp"
@@ -114,6 +117,33 @@ TEST_F(Grid, that_is_assigned_takes_its_labels_along) {
     EXPECT_FALSE(badge().isVisible());
 }
 
+TEST_F(Grid, that_is_told_on_a_badge_moves_no_picture) {
+    write("d.nrrd",
+          "space: RAS\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nkinds: space space space\n");
+    feel(scratch("d.nrrd").toStdString());
+    put_labels("l.nrrd", "spacings: 1 1 1\n");
+    Scene& scene = window_->views().scene();
+    const auto place = [&] { return QRect(scene.mapTo(window_.get(), QPoint()), scene.size()); };
+    const QRect before = place();
+    auto& overlays = window_->panel().overlay_controls();
+    overlays.open(run::source_named(scratch("l.nrrd").toStdString()));
+    wait_until([&] { return badge().isVisible(); });
+    wait_until_settled();
+    EXPECT_EQ(place(), before);
+    // Words at the upper edge are not covered.
+    part<Note>("force_part_message").say(QString("Word upon word ").repeated(20));
+    auto& notes = part<QLabel>("notes");
+    wait_until(
+        [&] { return notes.isVisible() && !notes.geometry().intersects(badge().geometry()); });
+    SlicePane& slice = window_->views().slice(1);
+    QTest::mouseDClick(&slice, Qt::LeftButton, {}, slice.rect().center());
+    wait_until([&] { return badge().parentWidget() == &slice && badge().isVisible(); });
+    wait_until([&] { return badge().y() > slice.height() / 2; });
+    EXPECT_TRUE(slice.rect().contains(badge().geometry()));
+    QTest::mouseClick(&badge(), Qt::LeftButton);
+    wait_until([&] { return part<QLabel>("overlay_beside").isVisible(); });
+}
+
 TEST_F(Grid, that_only_the_volume_or_the_overlay_has_is_told) {
     write("d.nrrd",
           "space: RAS\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nkinds: space space space\n");
@@ -140,18 +170,20 @@ TEST_F(Grid, without_a_spacing_says_so_and_takes_one) {
     window_->resize(800, 560);
     part<QAction>("four").trigger();
     wait_until_settled();
-    std::vector<const QWidget*> panes{&window_->views().scene()};
-    for (const int axis : {0, 1, 2}) panes.push_back(&window_->views().slice(axis));
-    for (const QWidget* pane : panes) {
-        const QRect seen(pane->mapTo(&window_->views(), QPoint()), pane->size());
-        EXPECT_TRUE(pane->isVisible());
-        EXPECT_FALSE(seen.intersects(badge().geometry())) << "no words of a pane are covered";
+    const Scene& scene = window_->views().scene();
+    const auto seen = [&](const QWidget& one) {
+        return QRect(one.mapTo(&window_->views(), QPoint()), one.size());
+    };
+    EXPECT_TRUE(seen(scene).contains(seen(badge())));
+    for (const int axis : {0, 1, 2}) {
+        const SlicePane& pane = window_->views().slice(axis);
+        EXPECT_TRUE(pane.isVisible());
+        EXPECT_FALSE(seen(pane).intersects(seen(badge()))) << "no words of a pane are covered";
     }
     press(Qt::Key_Space);
     auto& hint = part<QLabel>("hint");
     wait_until([&] { return hint.isVisible(); });
-    const QPoint corner = hint.mapTo(&window_->views(), QPoint());
-    EXPECT_FALSE(QRect(corner, hint.size()).intersects(badge().geometry())) << "both can be read";
+    EXPECT_FALSE(seen(hint).intersects(seen(badge()))) << "both can be read";
     press(Qt::Key_Space);
     SlicePane& pane = window_->views().slice(2);
     const auto ends_in = [&](const char* unit) {
@@ -189,6 +221,29 @@ TEST_F(Grid, of_a_microscope_is_told_in_micrometres) {
             << name << ": " << label.text().toStdString();
     }
     EXPECT_TRUE(part<QLabel>("readout").text().endsWith("/µm"));
+    const auto type = [&](const char* name, const char* number) {
+        auto& box = on_page<NumberBox>(name);
+        EXPECT_TRUE(box.suffix().endsWith("µm")) << name;
+        box.setFocus();
+        QTest::keyClick(&box, Qt::Key_A, Qt::ControlModifier);
+        QTest::keyClicks(&box, number);
+        QTest::keyClick(&box, Qt::Key_Return);
+    };
+    type("texture_amplitude_box", "0.25");
+    type("texture_wavelength_box", "1.5");
+    const auto settings = [&] { return window_->content().effect().settings(); };
+    EXPECT_NEAR(settings().force.texture.amplitude, 0.25e-3, 1e-12);
+    EXPECT_NEAR(settings().force.texture.wavelength, 1.5e-3, 1e-12);
+    auto& slider = on_page<QSlider>("texture_amplitude_slider");
+    slider.setFocus();
+    QTest::keyClick(&slider, Qt::Key_End);
+    EXPECT_NEAR(settings().force.texture.amplitude, 0.5e-3, 1e-12) << "of the volume's unit";
+    press(Qt::Key_Space);  // forces off
+    on_page<QComboBox>("layers");
+    QTest::mouseClick(&part<QPushButton>("add_layer"), Qt::LeftButton);
+    wait_until([&] { return settings().layers != nullptr; });
+    type("layers_closing_box", "2");
+    EXPECT_NEAR(settings().layers->closing, 2e-3, 1e-12);
 }
 
 TEST_F(Grid, of_a_body_or_of_no_file_needs_no_words) {

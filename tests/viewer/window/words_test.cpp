@@ -2,8 +2,10 @@
 #include <QAction>
 #include <QFileDialog>
 #include <QLabel>
+#include <QStatusBar>
 #include <QTextBrowser>
 
+#include <algorithm>
 #include <map>
 #include <utility>
 
@@ -133,6 +135,39 @@ TEST_F(DrawnWords, leave_the_pages_eight_lines_of_a_small_window) {
     const QWidget& page = *part<QTabWidget>("tabs").currentWidget();
     EXPECT_GE(page.height(), 8 * page.fontMetrics().lineSpacing());
     save("small");
+}
+
+TEST_F(WordsInWindow, of_a_notice_in_a_small_window_are_seen_to_their_end) {
+    feel("synthetic:sphere:24x24x24");
+    window_->resize(640, 600);
+    wait_until_quiet(*window_);
+    QStatusBar& bar = *window_->statusBar();
+    auto& readout = part<QLabel>("readout");
+    wait_until([&] { return !readout.text().isEmpty(); });
+    const auto room = [&] {
+        int right = bar.width();
+        for (const auto* label : bar.findChildren<QLabel*>()) {
+            if (label->isVisible()) right = std::min(right, label->x());
+        }
+        return right;
+    };
+    const QString words = "Felt through the device simulated with a hand";
+    window_->messages().show_done(words);
+    wait_until([&] { return bar.currentMessage() == words; });
+    wait_until_quiet(bar);
+    wait_until([&] { return room() > bar.fontMetrics().horizontalAdvance(words); });
+    bar.clearMessage();
+    wait_until([&] { return readout.isVisible(); });
+    // Longer than the window: dots at the end, and all of it as the tip.
+    const QString longer = QString("many words ").repeated(20);
+    const auto end_of = [&](const QString& message) {
+        bar.showMessage(message);
+        wait_until_quiet(bar);
+        return bar.grab().toImage();
+    };
+    EXPECT_EQ(end_of(longer), end_of(longer + "and more")) << "what is cut off is not seen";
+    EXPECT_NE(end_of(longer), end_of(bar.fontMetrics().elidedText(longer, Qt::ElideRight, 300)));
+    EXPECT_TRUE(bar.toolTip().contains("many words"));
 }
 
 TEST_F(WordsInWindow, stay_in_their_place_when_the_hand_touches) {
