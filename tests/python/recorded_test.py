@@ -104,3 +104,12 @@ def test_the_page_says_which_recordings_were_read(tmp_path):
     write(recorded.modelled(1, 2), tmp_path / "mine/probe.traj")
     made = " ".join(recorded.run(Options(quick=True, seeds=1, data=tmp_path)).paragraphs)
     assert "From there: mine. The others here are modelled." in made and "None were available" not in made
+
+
+def test_a_recording_without_friction_fails_no_claim(tmp_path):
+    made = recorded.modelled(1, 2)
+    _, _, normal_force = recorded.device_of(made, recorded.plane_through(made))
+    (tmp_path / "mine").mkdir()
+    write(made._replace(force=normal_force), tmp_path / "mine/probe.traj")
+    claims = list(recorded.run(Options(quick=True, seeds=1, data=tmp_path)).claims)
+    assert len(claims) == 4 and all("control" not in claim.statement or claim.held for claim in claims)

@@ -272,6 +272,33 @@ def test_settings_that_are_none_by_default_are_numbers_too():
             put(setup, name, 0.5)
 
 
+@pytest.mark.parametrize("name", ["rotational_stiffness", "rotational_damping", "torque_limit", "torque_rate_limit", "stale_after",
+                                  "texture.wavelength", "magnet.peak"])
+def test_a_setting_that_a_touch_with_a_point_cannot_show_is_refused(tmp_path, capsys, name):
+    folder = tmp_path / "p.touches"
+    with pytest.raises(ValueError, match=f"^force.{name}: two touches would feel the same: .* does nothing: ") as refused:
+        trials.touching("synthetic:sphere:16x16x16", None, "simulated:hand=press", f"force.{name}", 0.2, folder, 1.5)
+    assert "choose another tool" not in str(refused.value)  # a study has only the point
+    words = ["synthetic:sphere:16x16x16", str(tmp_path / "p.csv"), "--setting", f"force.{name}", "--standard", "1"]
+    assert trials.main(words) == 2 and capsys.readouterr().err == f"palpate: {refused.value}\n"
+    assert not folder.exists()
+
+
+@pytest.mark.parametrize("name", ["force.damping", "force.viscosity", "friction.static_coefficient", "penetrability.threshold",
+                                  "force.texture.amplitude", "limit", "stiffness", "scale"])
+def test_a_setting_that_a_touch_shows_is_not_refused(name):
+    trials._refuse_without_difference(name, 0.4)
+
+
+@pytest.mark.parametrize("answer", [True, numpy.True_, numpy.array([1]), "1", None, 3])
+def test_only_1_or_2_is_an_answer_and_the_session_can_continue(tmp_path, answer):
+    with pytest.raises(ValueError, match="ask\\(\\) has to return 1 or 2"):
+        session(tmp_path / "t.csv", Plan(0.2, differences=(0.5,), repeats=1), lambda _: answer)
+    assert len(session(tmp_path / "t.csv", Plan(0.2, differences=(0.5,), repeats=1), lambda _: numpy.float64(2))) == 1
+    assert [row["answer"] for row in read(tmp_path / "t.csv")] == [2]
+    assert (tmp_path / "t.csv").read_text().splitlines()[1].split(",")[4] == "2"
+
+
 BALL = ("synthetic:sphere:24x24x24", "x.csv", "--standard", "0.2")
 
 

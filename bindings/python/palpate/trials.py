@@ -12,6 +12,7 @@ import difflib
 import fcntl
 import io
 import math
+import numbers
 import os
 import re
 import time
@@ -291,9 +292,9 @@ def session(path: _Path, plan: Plan, ask: Callable[[Trial], int], felt: str = ""
         columns = _columns(rows)
         while trial := next_trial(plan, [row["correct"] for row in rows]):
             answer = ask(trial)
-            if answer not in (1, 2):
+            if isinstance(answer, bool) or not isinstance(answer, numbers.Real) or answer not in (1, 2):  # True == 1
                 raise ValueError(f"ask() has to return 1 or 2, not {answer!r}")
-            row = _answered(trial, answer, felt, plan)
+            row = _answered(trial, int(answer), felt, plan)
             table.write(_line([row[name] for name in columns]))
             rows.append(row if "plan" in columns else {**row, "plan": ""})
     return rows
@@ -316,6 +317,23 @@ def put(render: Any, name: str, value: float) -> None:
         setattr(owner, last, value)
     except TypeError as error:
         raise ValueError(str(error)) from error
+
+
+def _refuse_without_difference(name: str, largest: float) -> None:
+    """Raises ValueError for a setting that changes nothing in a touch, which is with a point, as replay() refuses it."""
+    import palpate
+    ball = palpate.Field(palpate.load("synthetic:sphere:8x8x8").volume)
+    for value in (largest, largest / 2):  # the default is never refused: one of them is another value
+        setup = palpate.RenderSetup()
+        put(setup, name, value)
+        try:
+            palpate.replay(ball, "50%", [0.0], [[0.0, 0.0, 0.0]], setup=setup)
+        except ValueError as error:
+            # The limits of the device, not those of a replay, decide on the rest.
+            what, nothing, why = str(error).partition(" does nothing: ")
+            if nothing:
+                why = why.removesuffix(": choose another tool")
+                raise ValueError(f"{name}: two touches would feel the same: {what} does nothing: {why}") from error
 
 
 def touching(volume: _Path, level: Union[float, str, None], device: str, name: str, seconds: float, folder: _Path, largest: float,
@@ -389,6 +407,7 @@ def touching(volume: _Path, level: Union[float, str, None], device: str, name: s
                 file.unlink(missing_ok=True)
             raise
 
+    _refuse_without_difference(name, largest)
     opened(largest)  # Run refuses what the device cannot render stably
     return ask
 

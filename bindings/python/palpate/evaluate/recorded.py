@@ -209,7 +209,9 @@ def claims_of(table):
     rows, rubbed = table.where(samples="uint8", method="smooth"), plain.where(method="smooth")
     off, with_friction = rows["force_n_rms"], rubbed["with_friction_n_rms"]
     yield PAGE.claim("rounded", (off < 0.02 * rows["mean_force_n"]).all(), levels=SAMPLES["uint8"], most=largest(off))
-    yield PAGE.claim("friction", (with_friction > 0.05 * rubbed["mean_force_n"]).all(), least=with_friction.min())
+    # Recordings of the data folder may have none. That of the program and the modelled hands have FRICTION.
+    known = numpy.array([name == "plane" or name.startswith("modelled hand ") for name in rubbed["recording"]])
+    yield PAGE.claim("friction", (with_friction > 0.05 * rubbed["mean_force_n"])[known].all(), least=with_friction[known].min())
 
 
 def run(options):
