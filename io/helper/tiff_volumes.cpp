@@ -254,7 +254,8 @@ void check_alike(const TiffLayout& first, const TiffLayout& one, const fs::path&
                  const Request& request) {
     constexpr double rounding = 1e-3;
     if (one.values.slope != first.values.slope || one.values.intercept != first.values.intercept) {
-        throw Failure(quoted(file) + " has another calibration of its values (c0, c1) than the first "
+        throw Failure(quoted(file) +
+                      " has another calibration of its values (c0, c1) than the first "
                       "slice; save all slices with one calibration, or without any");
     }
     const bool are_known = one.image.spacing_note.empty() && first.image.spacing_note.empty();
