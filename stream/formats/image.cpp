@@ -250,7 +250,7 @@ class Taking {
         const Geometry finest = volume_.info.levels[0].geometry;
         Geometry given = finest;
         io::put_in({options_.spacing, options_.orientation}, given);
-        if (!options_.spacing && !options_.orientation) return;
+        if (!options_.spacing && options_.orientation.empty()) return;
         const Vec3 factor = given.spacing.cwiseQuotient(finest.spacing);
         for (Level& level : volume_.info.levels) {
             const Vec3 apart =

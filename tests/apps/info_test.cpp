@@ -131,6 +131,9 @@ TEST(Info, takes_orientation_and_spacing_from_the_command_line_where_the_file_ha
     for (const std::string out : {"a.nrrd", "a.mha", "a.zarr"}) {
         ASSERT_EQ(palpate(folder, Words{"convert"} + raw + Words{out}).status, 0) << out;
         EXPECT_EQ(info(folder, {out})["orientation"], nullptr) << out;
+        const json same = info(folder, {out, "--orientation", "LPS", "--spacing", "1,1,1"});
+        EXPECT_EQ(same["orientation"], "L P S") << out << " has these axes by chance";
+        EXPECT_EQ(same["spacing_known"], true) << out;
         const std::string known = "known-" + out;
         const Words all = Words{"convert"} + raw + Words{"--orientation", "RAS", known};
         ASSERT_EQ(palpate(folder, all).status, 0) << out;
