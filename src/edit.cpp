@@ -6,10 +6,12 @@
 #include <cstring>
 #include <limits>
 #include <stdexcept>
+#include <type_traits>
 #include <vector>
 
 #include "edit/before.hpp"
 #include "edit/reach.hpp"
+#include "palpate/names.hpp"
 
 namespace palpate {
 namespace {
@@ -250,6 +252,23 @@ void check_sweep(const edit::Sweep& sweep, const Geometry& geometry) {
 
 }  // namespace
 
+void check(const edit::Fill& fill, SampleType type) {
+    if (!std::isfinite(fill.value)) {
+        throw std::invalid_argument("the value that fills a box must be finite");
+    }
+    with_type(type, [&](auto zero) {
+        using T = decltype(zero);
+        const auto low = double(std::numeric_limits<T>::lowest());
+        const auto high = double(std::numeric_limits<T>::max());
+        // Rounded first, as by fitted().
+        const double value = std::is_integral_v<T> ? std::nearbyint(fill.value) : fill.value;
+        if (value >= low && value <= high) return;
+        throw std::invalid_argument("the value " + number_text(fill.value) +
+                                    " does not fit into the samples, which hold " +
+                                    number_text(low) + " to " + number_text(high));
+    });
+}
+
 void check(const Edit& edit, const Samples& samples) {
     if (samples.frames().size() > 1) {
         throw std::invalid_argument(
@@ -263,9 +282,7 @@ void check(const Edit& edit, const Samples& samples) {
     } else if (const auto* sweep = std::get_if<edit::Sweep>(&edit)) {
         check_sweep(*sweep, samples.geometry());
     } else if (const auto* fill = std::get_if<edit::Fill>(&edit)) {
-        if (!std::isfinite(fill->value)) {
-            throw std::invalid_argument("the value that fills a box must be finite");
-        }
+        check(*fill, samples.type());
     } else if ((std::get<edit::Replace>(edit).at.array().abs() > 1 << 20).any()) {
         throw std::invalid_argument("the samples to put in place lie far outside the grid");
     }
