@@ -253,9 +253,6 @@ void check_sweep(const edit::Sweep& sweep, const Geometry& geometry) {
 }  // namespace
 
 void check(const edit::Fill& fill, SampleType type) {
-    if (!std::isfinite(fill.value)) {
-        throw std::invalid_argument("the value that fills a box must be finite");
-    }
     with_type(type, [&](auto zero) {
         using T = decltype(zero);
         const auto low = double(std::numeric_limits<T>::lowest());
@@ -282,7 +279,9 @@ void check(const Edit& edit, const Samples& samples) {
     } else if (const auto* sweep = std::get_if<edit::Sweep>(&edit)) {
         check_sweep(*sweep, samples.geometry());
     } else if (const auto* fill = std::get_if<edit::Fill>(&edit)) {
-        check(*fill, samples.type());
+        if (!std::isfinite(fill->value)) {
+            throw std::invalid_argument("the value that fills a box must be finite");
+        }
     } else if ((std::get<edit::Replace>(edit).at.array().abs() > 1 << 20).any()) {
         throw std::invalid_argument("the samples to put in place lie far outside the grid");
     }

@@ -124,8 +124,7 @@ void bind_edits(py::module_& module) {
         .def_property_readonly("low", [](const edit::Fill& f) { return f.box.low; })
         .def_property_readonly("high", [](const edit::Fill& f) { return f.box.high; })
         .def_readonly("value", &edit::Fill::value,
-                      "[data units] Rounded for whole numbers. A value that the samples' type does "
-                      "not hold is a\nValueError.");
+                      "[data units] Rounded for whole numbers, and clamped to the samples' type.");
     py::class_<edit::Replace>(module, "Replace", "Puts another volume's samples into the grid.")
         .def(py::init([](const Index3& at, const Volume& samples) {
                  return edit::Replace{at, samples};

@@ -87,8 +87,7 @@ struct Sweep {
 /// Sets all samples of a box to one value.
 struct Fill {
     SampleBox box;
-    /// [data units] Rounded for whole numbers. A value that the sample type does not hold is
-    /// refused.
+    /// [data units] Rounded for whole numbers, and clamped to the sample type.
     double value = 0;
 };
 /// Replaces a box of the grid by the samples of another volume, of any type, the first one at `at`.
@@ -122,7 +121,7 @@ using ReadSamples = std::function<void(const SampleBox& box, std::span<std::byte
 /// Throws std::invalid_argument, with the reason, for an impossible edit: numbers out of range or
 /// not finite, or samples that are a sequence (edit one frame of it instead).
 void check(const Edit& edit, const Samples& samples);
-/// The same for the value alone, before there are samples.
+/// Throws std::invalid_argument for a value that would be clamped. For values that a person enters.
 void check(const edit::Fill& fill, SampleType type);
 /// The samples after an edit. Values outside the sample type's range are clamped. The same input
 /// gives the same bits. For a large grid, `read` gives the samples of the bricks that are edited
