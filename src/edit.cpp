@@ -6,10 +6,12 @@
 #include <cstring>
 #include <limits>
 #include <stdexcept>
+#include <type_traits>
 #include <vector>
 
 #include "edit/before.hpp"
 #include "edit/reach.hpp"
+#include "palpate/names.hpp"
 
 namespace palpate {
 namespace {
@@ -249,6 +251,20 @@ void check_sweep(const edit::Sweep& sweep, const Geometry& geometry) {
 }
 
 }  // namespace
+
+void check(const edit::Fill& fill, SampleType type) {
+    with_type(type, [&](auto zero) {
+        using T = decltype(zero);
+        const auto low = double(std::numeric_limits<T>::lowest());
+        const auto high = double(std::numeric_limits<T>::max());
+        // Rounded first, as by fitted().
+        const double value = std::is_integral_v<T> ? std::nearbyint(fill.value) : fill.value;
+        if (value >= low && value <= high) return;
+        throw std::invalid_argument("the value " + number_text(fill.value) +
+                                    " does not fit into the samples, which hold " +
+                                    number_text(low) + " to " + number_text(high));
+    });
+}
 
 void check(const Edit& edit, const Samples& samples) {
     if (samples.frames().size() > 1) {

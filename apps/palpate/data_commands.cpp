@@ -87,6 +87,7 @@ DataRequest fill(const CommandWords& words, const Volume& volume) {
         throw std::invalid_argument("this box lies outside the volume");
     }
     const edit::Fill fill{box, io::level_from_text(words[2], volume)};
+    check(fill, volume.type());
     return [fill](run::Data& data, const Field&, double, const io::Progress& progress) {
         data.editor().apply(fill, progress);
         return std::string();

@@ -123,7 +123,8 @@ void bind_edits(py::module_& module) {
              "Corners (i, j, k), both in the box; value [data units].")
         .def_property_readonly("low", [](const edit::Fill& f) { return f.box.low; })
         .def_property_readonly("high", [](const edit::Fill& f) { return f.box.high; })
-        .def_readonly("value", &edit::Fill::value, "[data units]");
+        .def_readonly("value", &edit::Fill::value,
+                      "[data units] Rounded for whole numbers, and clamped to the samples' type.");
     py::class_<edit::Replace>(module, "Replace", "Puts another volume's samples into the grid.")
         .def(py::init([](const Index3& at, const Volume& samples) {
                  return edit::Replace{at, samples};

@@ -154,13 +154,7 @@ py::dict replay(const Field& field, const io::Level& isovalue, const Doubles& ti
         without_gil([&] { return run::render_offline(renderer, trajectory, sinks); });
     py::dict table = columns_of(rows);
     table["summary"] = dict_of(summary);
-    if (renderer.settings.layers) {
-        py::list names;
-        for (const Layer& layer : renderer.settings.layers->layers) names.append(layer.name);
-        table["layer_names"] = py::tuple(names);
-        table["nested_layers"] = level_count(*renderer.settings.layers);
-    }
-    table["has_tool"] = renderer.settings.tool != nullptr;
+    add_extras(table, extras_of(renderer.settings));
     if (path) {
         table["path"] = py::make_tuple(array_from(std::move(corners.ticks)),
                                        array_from(std::move(corners.values)));
@@ -182,6 +176,20 @@ py::dict columns_of(const std::vector<io::TraceRow>& rows) {
         table[one.name] = column(rows, [&](const Row& row) { return one.part(row); });
     });
     return table;
+}
+
+io::TraceExtras extras_of(const RendererSettings& settings) {
+    io::TraceExtras extras{.tool = settings.tool != nullptr};
+    if (!settings.layers) return extras;
+    for (const Layer& layer : settings.layers->layers) extras.layer_names.push_back(layer.name);
+    extras.nested_layers = static_cast<std::size_t>(level_count(*settings.layers));
+    return extras;
+}
+
+void add_extras(py::dict& table, const io::TraceExtras& extras) {
+    table["layer_names"] = py::tuple(py::cast(extras.layer_names));
+    table["nested_layers"] = extras.nested_layers;
+    table["has_tool"] = extras.tool;
 }
 
 void bind_offline(py::module_& module) {
@@ -210,15 +218,13 @@ void bind_offline(py::module_& module) {
         "_read_trace",
         [](const std::filesystem::path& file) {
             std::vector<io::TraceRow> rows;
-            bool has_tool = false;
+            io::TraceExtras extras;
             {
                 const GilReleased unlocked;
-                const std::string text = io::read_text(file, ctrl_c());
-                rows = io::parse_trace(text, file.string());
-                has_tool = io::CsvReader(text, file.string()).has_column("proxy_qw");
+                rows = io::parse_trace(io::read_text(file, ctrl_c()), file.string(), &extras);
             }
             py::dict table = columns_of(rows);
-            table["has_tool"] = has_tool;
+            add_extras(table, extras);
             return table;
         },
         py::arg("path"));

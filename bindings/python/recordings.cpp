@@ -34,22 +34,41 @@ py::tuple read(const fs::path& path, int hand) {
     std::optional<io::RecordingReader> reader;
     std::vector<io::TraceRow> rows;
     std::vector<std::int64_t> commands;
+    io::TraceExtras extras;
+    bool other_layers = false;
     {
         ReportedItems slices(ctrl_c(), 0, updates_in_slice);
         const GilReleased unlocked;
         reader.emplace(io::read_text(path, ctrl_c()), path.string(), hand);
+        extras = extras_of(reader->head().settings);
         while (const auto event = reader->next()) {
             slices.done();
             if (const auto* tick = std::get_if<SessionTick>(&*event)) {
                 rows.push_back(io::trace_row(tick->tick));
             } else {
                 commands.push_back(static_cast<std::int64_t>(rows.size()));
+                const auto& command = std::get<Command>(*event);
+                if (const auto* use = std::get_if<command::UseTool>(&command)) {
+                    extras.tool |= use->tool != nullptr;
+                } else if (const auto* use = std::get_if<command::UseLayers>(&command)) {
+                    RendererSettings now;
+                    now.layers = use->layers;
+                    const auto named = extras_of(now);
+                    if (rows.empty()) extras.layer_names = named.layer_names;
+                    if (rows.empty()) extras.nested_layers = named.nested_layers;
+                    other_layers |= use->layers && named.layer_names != extras.layer_names;
+                }
             }
         }
     }
-    return py::make_tuple(dict_of(reader->head()), columns_of(rows),
-                          array_from(std::move(commands)), reader->complete(), reader->lost(),
-                          reader->hands());
+    if (other_layers) {
+        warn("the layers changed during the recording: trace.layer_names are those at its start",
+             3);
+    }
+    py::dict table = columns_of(rows);
+    add_extras(table, extras);
+    return py::make_tuple(dict_of(reader->head()), table, array_from(std::move(commands)),
+                          reader->complete(), reader->lost(), reader->hands());
 }
 
 py::dict validate(const fs::path& path, const fs::path& volume, const ProgressFunction& progress) {

@@ -1,6 +1,10 @@
 // Live runs: a device by name, data that may be edited or played, recordings.
 #include "palpate/run/run.hpp"
 
+#include <exception>
+#include <mutex>
+#include <utility>
+
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
 #include "bindings/python/commands.hpp"
@@ -116,12 +120,23 @@ struct LiveRun : run::Run {
     /// any case.
     bool finish() {
         stop();
-        if (!python_device || python_device->finish()) return true;
+        const bool ended = !python_device || python_device->finish();
+        const std::lock_guard lock(finishing_);
+        if (!recording()) return ended;
         try {
-            stop_recording();
-        } catch (const io::OutputError&) {  // it is cut off
+            ticks_recorded_ = stop_recording(ended ? ctrl_c() : OnProgress{});
+        } catch (const io::OutputError&) {  // it is cut off: stop_recording() raises it
+            unfinished_ = std::current_exception();
         }
-        return false;
+        return ended;
+    }
+
+    /// Also after finish(): then the ticks of the recording that it ended, once.
+    std::int64_t end_of_recording() {
+        const std::lock_guard lock(finishing_);
+        if (const auto error = std::exchange(unfinished_, nullptr)) std::rethrow_exception(error);
+        if (recording()) return stop_recording(ctrl_c());
+        return std::exchange(ticks_recorded_, 0);
     }
 
     /// For calls that have no effect in a forked child. Throws std::logic_error there.
@@ -133,6 +148,11 @@ struct LiveRun : run::Run {
     OwnProcess process;
     const std::shared_ptr<EditedData> edited;
     PythonDevice* const python_device;  ///< where the device is written in Python, the run's own
+
+  private:
+    std::mutex finishing_;
+    std::int64_t ticks_recorded_ = 0;
+    std::exception_ptr unfinished_;
 };
 
 bool is_store(py::handle what) {
@@ -303,9 +323,9 @@ void bind_run(py::module_& module) {
             "record", [](R& r, const fs::path& path) { r.here().record(path, ctrl_c()); },
             py::arg("path"), Unlocked(), "Records from now on, to a new file. Raises OutputError.")
         .def(
-            "stop_recording", [](R& r) { return r.here().stop_recording(ctrl_c()); }, Unlocked(),
+            "stop_recording", [](R& r) { return r.here().end_of_recording(); }, Unlocked(),
             "The number of its ticks. The session goes on. Ctrl-C ends the wait for a pipe that is "
-            "read slowly.")
+            "read\nslowly. stop() does the same, and the number can be asked for afterwards.")
         .def("field", &R::field_now, Unlocked(), "A copy of the Field felt, edits included.")
         .def_property_readonly("device", &R::device, "DeviceInfo")
         .def_property_readonly("isovalue", &R::isovalue,

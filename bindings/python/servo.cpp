@@ -10,6 +10,7 @@
 #include "bindings/python/python_device.hpp"
 #include "bindings/python/renderer.hpp"
 #include "bindings/python/without_gil.hpp"
+#include "palpate/devices/last_resort.hpp"
 #include "palpate/run/no_effect.hpp"
 
 namespace palpate::python {
@@ -21,7 +22,8 @@ struct DeviceServo {
                 const ServoSettings& settings)
         : python_device(std::move(its_device)),
           asked{renderer, {}},
-          servo(Session{std::move(renderer), {}}, *python_device, settings) {}
+          servo(Session{std::move(renderer), {}}, *python_device, settings),
+          last_resort(*python_device) {}
 
     /// False if the device's thread goes on for good (PythonDevice::finish()).
     bool finish() {
@@ -39,6 +41,7 @@ struct DeviceServo {
     std::unique_ptr<PythonDevice> python_device;
     Session asked;  ///< with all that was sent
     Servo servo;
+    devices::LastResort last_resort;
 };
 
 using Held = std::shared_ptr<DeviceServo>;

@@ -87,7 +87,8 @@ struct Sweep {
 /// Sets all samples of a box to one value.
 struct Fill {
     SampleBox box;
-    double value = 0;  ///< [data units]
+    /// [data units] Rounded for whole numbers, and clamped to the sample type.
+    double value = 0;
 };
 /// Replaces a box of the grid by the samples of another volume, of any type, the first one at `at`.
 /// Only the size of that volume's geometry counts. Applications can insert simulated data with
@@ -120,6 +121,8 @@ using ReadSamples = std::function<void(const SampleBox& box, std::span<std::byte
 /// Throws std::invalid_argument, with the reason, for an impossible edit: numbers out of range or
 /// not finite, or samples that are a sequence (edit one frame of it instead).
 void check(const Edit& edit, const Samples& samples);
+/// Throws std::invalid_argument for a value that would be clamped. For values that a person enters.
+void check(const edit::Fill& fill, SampleType type);
 /// The samples after an edit. Values outside the sample type's range are clamped. The same input
 /// gives the same bits. For a large grid, `read` gives the samples of the bricks that are edited
 /// for the first time, in memory or not. Throws as check() does, for a large grid without `read`,

@@ -77,15 +77,10 @@ struct RecordingReader::Rows {
     std::size_t status, force_flags, device_status, buttons, age, frozen, clutched;
     std::optional<std::size_t> moment, samples;        // of format 1, fixed samples may lack them
     std::optional<std::array<std::size_t, 3>> layers;  // from format 3 on
-    struct ToolColumns {
-        QuaternionColumns hand, proxy;
-        VectorColumns torque;
-        std::size_t contacts;
-    };
-    std::optional<ToolColumns> felt_tool;      // from format 4 on
-    std::optional<std::size_t> opening;        // from format 6 on
-    std::optional<std::size_t> hand_column;    // of format 7
-    std::optional<std::size_t> number, crc32;  // format 1 does
+    std::optional<ToolColumns> felt_tool;              // from format 4 on
+    std::optional<std::size_t> opening;                // from format 6 on
+    std::optional<std::size_t> hand_column;            // of format 7
+    std::optional<std::size_t> number, crc32;          // format 1 does
     std::array<std::size_t, 9> tool;
 
     Rows(std::string whole, std::string called, int format, std::size_t hands, int its_hand)
@@ -110,10 +105,7 @@ struct RecordingReader::Rows {
             layers = {csv.column("layer_touched"), csv.column("layers_inside"),
                       csv.column("layers_punctured")};
         }
-        if (format > 3) {
-            felt_tool = ToolColumns{QuaternionColumns(csv, ""), QuaternionColumns(csv, "proxy_"),
-                                    VectorColumns(csv, "torque"), csv.column("contacts")};
-        }
+        if (format > 3) felt_tool.emplace(csv);
         if (format > 5) opening = csv.column("opening");
         if (format > format_of_one_hand) hand_column = csv.column("hand");
         if (format > 1) {

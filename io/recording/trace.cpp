@@ -114,16 +114,32 @@ void PosesWriter::add(std::int64_t tick, const Pose& pose) {
     file_.write(line_);
 }
 
-std::vector<TraceRow> parse_trace(std::string_view text, const std::string& name) {
+std::vector<TraceRow> parse_trace(std::string_view text, const std::string& name,
+                                  TraceExtras* extras) {
     CsvReader rows(text, name);
     const TraceColumns columns(rows);
+    std::optional<ToolColumns> tool;
+    std::optional<LayerColumns> layers;
+    if (rows.has_column("proxy_qw")) tool.emplace(rows);
+    if (rows.has_column("layer") && rows.has_column("inside")) layers.emplace(rows);
     std::vector<TraceRow> trace;
-    while (rows.next()) trace.push_back(columns.read(rows));
+    while (rows.next()) {
+        trace.push_back(columns.read(rows));
+        if (tool) tool->read(rows, trace.back());
+        if (layers) trace.back().layers = layers->read(rows);
+    }
+    if (extras) {
+        *extras = {.tool = tool.has_value()};
+        if (layers) {
+            extras->layer_names = layers->names;
+            extras->nested_layers = layers->nested;
+        }
+    }
     return trace;
 }
 
-std::vector<TraceRow> read_trace(const std::filesystem::path& path) {
-    return parse_trace(read_text(path), path.string());
+std::vector<TraceRow> read_trace(const std::filesystem::path& path, TraceExtras* extras) {
+    return parse_trace(read_text(path), path.string(), extras);
 }
 
 ProxyPath read_proxy_path(const std::filesystem::path& path, const OnProgress& progress) {

@@ -1,8 +1,10 @@
 // The columns of a trace, written and read. Private to io/; traces and recordings are made of them.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "io/system/number.hpp"
 #include "palpate/io/csv.hpp"
@@ -52,6 +54,27 @@ struct QuaternionColumns {
     QuaternionColumns(const CsvReader& rows, const std::string& prefix);
     /// As it stands, unit or not.
     Quaternion read(const CsvReader& rows) const;
+};
+
+/// The places of the columns of tool_header in a table.
+struct ToolColumns {
+    QuaternionColumns hand, proxy;
+    VectorColumns torque;
+    std::size_t contacts;
+
+    explicit ToolColumns(const CsvReader& rows);
+    void read(const CsvReader& rows, TraceRow& row) const;
+};
+
+/// The places of `layer` and `inside` in a table, and the layers that they name.
+struct LayerColumns {
+    std::size_t touched, inside;
+    std::vector<std::string> names;
+    std::size_t nested = 0;
+
+    /// Reads all rows, from the header on, for the names.
+    explicit LayerColumns(CsvReader rows);
+    LayersFelt read(const CsvReader& rows) const;
 };
 
 /// The places of a trace's columns in a table. Throws InputError if one is missing.

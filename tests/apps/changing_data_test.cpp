@@ -140,8 +140,8 @@ TEST(Touch, says_which_commands_the_data_do_not_allow) {
     }
     for (const char* line :
          {"0 brush carve", "0 brush drill 3", "0 brush carve -3", "0 paint 1,2,3", "0 carve 1,2 3",
-          "0 fill 1,1 5", "0 fill 1.5,1,1 5", "0 fill 99,1,1 5", "0 fill -3,0,0:-1,9,9 5", "0 save",
-          "0 save o.png"}) {
+          "0 fill 1,1,1 300", "0 fill 1,1,1 -7.4", "0 fill 1,1 5", "0 fill 1.5,1,1 5",
+          "0 fill 99,1,1 5", "0 fill -3,0,0:-1,9,9 5", "0 save", "0 save o.png"}) {
         expect_refusal(ball, line, "c.txt, line 1");
     }
     for (const char* line : {"0 seek", "0 loop maybe", "0 play inf", "0 seek nan"}) {

@@ -1,5 +1,11 @@
 """Sessions that have ended, and devices of Python that cannot be."""
 
+import os
+import signal
+import subprocess
+import sys
+import time
+
 import palpate
 import pytest
 
@@ -18,6 +24,13 @@ class Still:
 
     def read(self):
         return palpate.DeviceReading(position=self.position, status="ready")
+
+
+def until(is_true):
+    end = time.monotonic() + 20
+    while not is_true():
+        assert time.monotonic() < end
+        time.sleep(0.01)
 
 
 def servo(device, **render):
@@ -73,3 +86,36 @@ def test_penetrability_begins_at_the_level_that_was_asked_for_last():
         while not (session.snapshot() and session.snapshot().frozen):
             pass
         assert session.snapshot().tick.isovalue == 90
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
+@pytest.mark.parametrize("sent", ("SIGTERM", "SIGHUP", "SIGUSR1", "SIGABRT"))
+def test_a_signal_that_ends_the_program_leaves_no_force_on_a_device_of_a_servo(sent, tmp_path):
+    program = """
+import os, sys, time, numpy, palpate
+ball = 400 - 5 * numpy.linalg.norm(numpy.indices((64, 64, 64)) - 32.0, axis=0)
+file = os.open(sys.argv[1], os.O_RDWR | os.O_CREAT)
+class Pressed:
+    place = 2
+    def info(self):
+        return palpate.DeviceInfo(name="pressed")
+    def read(self):
+        self.place = min(self.place + 0.05, 13)
+        return palpate.DeviceReading(position=(self.place, 32, 32), status="ready")
+    def write(self, force, torque):
+        os.pwrite(file, b"%8.4f" % numpy.linalg.norm(force), 0)
+field = palpate.Field(palpate.Volume(ball.astype("float32")))
+servo = palpate.Servo(palpate.Renderer(field, 300), Pressed(), real_time=False)
+servo.start()
+while True:
+    time.sleep(1)
+"""
+    told = tmp_path / "force"
+    with subprocess.Popen([sys.executable, "-B", "-c", program, str(told)]) as child:
+        try:
+            until(lambda: told.exists() and told.read_bytes().strip() and float(told.read_bytes()) > 0.1)
+            child.send_signal(getattr(signal, sent))
+            assert child.wait(20) == -getattr(signal, sent)
+        finally:
+            child.kill()
+    assert float(told.read_bytes()) == 0

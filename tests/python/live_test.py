@@ -407,7 +407,8 @@ def test_a_numpy_array_is_felt_edited_and_recorded(tmp_path):
     with run:
         run.edit(palpate.Fill((0, 0, 0), (3, 3, 3), 0))
         until(lambda: run.snapshot() and run.snapshot().number > 100)
-    run.stop_recording()
+    assert palpate.read_recording(tmp_path / "ball.csv").complete  # the end of the run ends it
+    assert run.stop_recording() > 100 and run.stop_recording() == 0
     del run
     palpate.write(palpate.Volume(array, **place), name)
     assert palpate.validate(tmp_path / "ball.csv")["complete"]

@@ -13,6 +13,7 @@ import numpy
 import pytest
 
 import palpate
+from live_test import until
 
 PALPATE, NAN = os.environ["PALPATE"], float("nan")
 # Volume, level, options of the command line and the same in Python.
@@ -175,18 +176,39 @@ def test_a_trace_is_written_and_read_back_bit_for_bit(settings, tmp_path):
     for name in ("t", "hip", "scp", "force", "density", "isovalue", "constrained", "tetrahedra", "update_ns"):
         assert numpy.array_equal(getattr(again, name), getattr(trace, name)), name
     assert again.has_tool == trace.has_tool == ("tool" in settings)
-    if again.has_tool:
-        assert numpy.array_equal(again.proxy_orientation_xyzw, trace.proxy_orientation_xyzw)
-        assert numpy.array_equal(again.torque, trace.torque)
+    for name in ("torque", "hand_orientation_xyzw", "proxy_orientation_xyzw", "contacts", "layer", "inside"):
+        assert numpy.array_equal(getattr(again, name), getattr(trace, name)), name
+    assert again.layer_names == (("outer_ soft",) if "layers" in settings else ())  # the inner one is not reached
+    assert ("tool" in settings) == bool(trace.contacts.any()) and ("layers" in settings) == (trace.layer.max() >= 0)
     text = (tmp_path / "trace.csv").read_text()
     assert ("outer_ soft" in text) == ("layers" in settings)
     again.write(tmp_path / "again.csv")
-    assert settings or (tmp_path / "again.csv").read_text() == text
+    assert (tmp_path / "again.csv").read_text() == text
     again.force = again.force[:-1]
     with pytest.raises(ValueError, match="force: the shape is .*, the trace has 300 ticks"):
         again.write(tmp_path / "short.csv")
     with pytest.raises(palpate.OutputError):
         trace.write(tmp_path / "none" / "trace.csv")
+
+
+HEADER = ("t,hip_x,hip_y,hip_z,scp_x,scp_y,scp_z,force_x,force_y,force_z,density,isovalue,mode,tetrahedra,update_ns,layer,inside\n"
+          "0,1,2,3,4,5,6,7,8,9,10,11,free,1,2,,a+b\n")
+ROW = "0,1,2,3,4,5,6,7,8,9,10,11,free,1,2,"
+
+
+def test_layers_of_a_trace_are_named_in_its_order_and_have_to_be_nested(tmp_path):
+    path = tmp_path / "trace.csv"
+    path.write_text(HEADER + ROW + "c,a\n" + ROW + "b,d\n" + ROW + ",\n")
+    trace = palpate.read_trace(path)
+    assert (trace.layer_names, trace.nested_layers) == (("a", "b", "c", "d"), 2)
+    assert trace.layer.tolist() == [-1, 2, 1, -1] and trace.inside.tolist() == [2, 1, 4, 0]
+    for cells, why in ((",b", "from the outermost"), (",b+a", "from the outermost"), (",a+c", "from the outermost")):
+        path.write_text(HEADER + ROW + cells + "\n")
+        with pytest.raises(palpate.InputError, match="trace.csv, line 3: .*" + why):
+            palpate.read_trace(path)
+    path.write_text(HEADER + "".join(f"{ROW}x{i},\n" for i in range(20)))
+    with pytest.raises(palpate.InputError, match="more than 16 layers"):
+        palpate.read_trace(path)
 
 
 @pytest.mark.parametrize("column, value", [
@@ -259,3 +281,18 @@ def test_a_tick_that_differs_is_told_as_on_the_command_line(tmp_path):
     with pytest.raises(palpate.InputError, match=r"run.csv: tick \d+ \(line \d+, [\d.]+ s\) differs: force: recorded") as raised:
         palpate.validate(path)
     assert told == f"palpate: {raised.value}\n"
+
+
+@pytest.mark.parametrize("settings", [{"tool": "rod:4"}, {"layers": "sample-head"}])
+def test_the_trace_of_a_recording_is_written_with_its_tool_or_layers(settings, tmp_path):
+    level = {"isovalue": 76.5} if "tool" in settings else {}
+    setup = palpate.Setup(device="simulated:hand=press", real_time=False, render=palpate.RenderSetup(**settings), **level)
+    with palpate.Run(palpate.load("synthetic:torus:32x32x32"), setup) as run:
+        run.record(tmp_path / "r.csv")
+        until(lambda: run.snapshot() and run.snapshot().number > 600)
+    trace = palpate.read_recording(tmp_path / "r.csv").trace
+    assert trace.has_tool == ("tool" in settings) and trace.layer_names == (() if trace.has_tool else ("skin", "bone"))
+    trace.write(tmp_path / "t.csv")
+    again = palpate.read_trace(tmp_path / "t.csv")
+    for name in ("torque", "hand_orientation_xyzw", "contacts", "layer", "inside"):
+        assert numpy.array_equal(getattr(again, name), getattr(trace, name)), name

@@ -119,3 +119,37 @@ def test_a_plot_says_which_axes_it_needs():
     trace = palpate.replay(FIELD, 100, TIMES, HIPS)
     with pytest.raises(ValueError, match="axes: two are needed"):
         trace.plot(3)
+
+
+@pytest.mark.parametrize("values, words", [
+    (numpy.linspace(0, 1, 216) * 1e-300, "changed them by up to 1e-300"), (1e9 + numpy.linspace(0, 1, 216), "subtract an offset"),
+    (numpy.where(numpy.arange(216) < 9, 312782574, 312782578).astype("uint32"), "216 whole numbers"), (2**53 + numpy.arange(216), "whole numbers"),
+    (numpy.where(numpy.arange(216) < 9, 1e300, 1), "9 samples were not finite (NaN, infinity or beyond 3.4e38)")])
+def test_values_that_float32_cannot_tell_apart_are_warned_of(values, words):
+    assert words in warned(lambda: palpate.as_volume(values.reshape(6, 6, 6)))
+
+
+def test_samples_all_beyond_float32_are_not_called_nan():
+    with pytest.raises(ValueError, match="beyond 3.4e38"):
+        palpate.as_volume(numpy.full((6, 6, 6), 1e300))
+
+
+@pytest.mark.parametrize("values", [numpy.linspace(-1000, 3000, 216), numpy.full(216, 0.1), numpy.arange(216, dtype="int64"),
+                                    numpy.linspace(0, 1, 216, dtype="float16"), numpy.arange(216, dtype=">i4")])
+def test_values_that_float32_holds_bring_no_warning(values):
+    assert warned(lambda: palpate.as_volume(values.reshape(6, 6, 6))) == ""
+
+
+def test_coordinates_of_dimensions_that_are_not_used_are_warned_of():
+    class Named:
+        dims, shape = ("x", "y", "z"), (6, 7, 8)
+        coords = {"x": numpy.arange(6) * 0.5, "y": numpy.arange(7), "z": 3.0 * numpy.arange(8)}
+
+        def __array__(self, dtype=None, copy=None):
+            return numpy.zeros(self.shape, dtype or "float32")
+
+    named = Named()
+    assert "the coordinates of x, z were not used" in warned(lambda: palpate.as_volume(named))
+    assert warned(lambda: palpate.as_volume(named, spacing=(0.5, 1, 3), origin=(0, 0, 0))) == ""
+    named.coords = {"y": numpy.arange(7)}
+    assert warned(lambda: palpate.as_volume(named)) == ""

@@ -27,10 +27,12 @@ def as_volume(data: Any, spacing: Optional[ArrayLike] = None, origin: Optional[A
     data: a Volume; a nibabel image of any format (its affine, RAS, gives spacing, origin and
     direction, LPS); or anything with a shape that NumPy can read, indexed [z, y, x]: an array,
     zarr, h5py, dask. Dimensions that are named x, y and z, as xarray's are, may have any order.
-    bool becomes uint8, int8 int16 and anything else that Palpate does not keep float32. NaN and
-    infinity become the least finite sample, with a warning. An array with masked elements is a
+    bool becomes uint8, int8 int16 and anything else that Palpate does not keep float32, with a
+    warning where whole numbers change or differences between samples are lost. NaN and infinity
+    become the least finite sample, with a warning. An array with masked elements is a
     ValueError: fill them first.
-    spacing, origin [mm] (x, y, z) and direction (3, 3) go before what `data` says.
+    spacing, origin [mm] (x, y, z) and direction (3, 3) go before what `data` says. Coordinates of
+    dimensions, as xarray has them, are not used, with a warning: their unit is not known.
     frame: of four-dimensional data this one, from 0; an axis in front ([t, z, y, x]), in nibabel
     the last. It is not needed if there is only one, and further axes may have a length of 1.
     """
@@ -43,6 +45,7 @@ def as_volume(data: Any, spacing: Optional[ArrayLike] = None, origin: Optional[A
     if hasattr(data, "affine") and hasattr(data, "dataobj"):
         samples, place = _from_nibabel(data, frame)
     else:
+        _tell_of_coordinates(data, given)
         samples, place = _frame_of(data, frame, axis=0), {}
     assumed = place.pop("assumed", False)
     volume = Volume(_kept(numpy.asanyarray(samples)), copy=None, **{**place, **given})
@@ -72,6 +75,22 @@ def _in_order(data):
     order = [axis for axis, name in enumerate(names) if name not in ("z", "y", "x")]
     order += [names.index(name) for name in "zyx"]
     return data if order == sorted(order) else numpy.asanyarray(data).transpose(order)
+
+
+def _tell_of_coordinates(data, given):
+    """Warns if the dimensions x, y and z have coordinates other than 0, 1, 2, ... in place of which nothing is given."""
+    coordinates = getattr(data, "coords", None)
+    names = getattr(data, "dims", ())
+    if not hasattr(coordinates, "keys") or not isinstance(names, tuple) or {"spacing", "origin"} <= set(given):
+        return
+    unused = []
+    for name in names:
+        if isinstance(name, str) and name.lower() in ("x", "y", "z") and name in coordinates.keys():
+            values = numpy.asarray(coordinates[name])
+            if not numpy.array_equal(values, numpy.arange(len(values))):
+                unused.append(name)
+    if unused:
+        warnings.warn(f"the coordinates of {', '.join(unused)} were not used: give spacing and origin in mm", stacklevel=3)
 
 
 def _frame_of(data, frame, axis):
@@ -200,13 +219,37 @@ def _finite(samples):
     count = sum(part.size - numpy.count_nonzero(numpy.isfinite(part)) for part in samples)
     if count in (0, samples.size):  # of the latter a Volume says that none is finite
         return samples
-    warnings.warn(f"{count} samples were not finite (NaN or infinity) and became the least finite "
+    warnings.warn(f"{count} samples were not finite (NaN, infinity or beyond 3.4e38) and became the least finite "
                   "value", stacklevel=4)
     least = min(part[numpy.isfinite(part)].min(initial=numpy.inf) for part in samples)
     finite = numpy.empty(samples.shape, samples.dtype)
     for part, made in zip(samples, finite):
         made[...] = numpy.where(numpy.isfinite(part), part, least)
     return finite
+
+
+def _tell_of_loss(samples, made):
+    """Warns if samples and what float32 made of them differ by more than its rounding of their range."""
+    if samples.dtype.kind != "f":
+        changed = sum(numpy.count_nonzero(to.astype(part.dtype) != part) for part, to in zip(samples, made))
+        if changed:
+            warnings.warn(f"{changed} whole numbers beyond 16777216 were rounded: float32 does not hold them, so "
+                          "different ones may have become equal", stacklevel=4)
+        return
+    least, most, error, beyond, finite = numpy.inf, -numpy.inf, 0, 0, 0
+    for part, to in zip(samples, made):
+        is_finite = numpy.isfinite(part)
+        held = is_finite & numpy.isfinite(to)
+        finite += numpy.count_nonzero(is_finite)
+        beyond += numpy.count_nonzero(is_finite) - numpy.count_nonzero(held)
+        least = min(least, part.min(initial=numpy.inf, where=held))
+        most = max(most, part.max(initial=-numpy.inf, where=held))
+        error = max(error, numpy.abs(part - to).max(initial=0, where=held))
+    if beyond and beyond == finite:
+        raise ValueError("the samples are beyond 3.4e38, the largest number of float32: scale them first")
+    if error > 1e-6 * (most - least if most > least else abs(most)):
+        warnings.warn(f"samples of type {samples.dtype} became float32, which changed them by up to {error:.3g}, where they lie "
+                      f"between {least:.6g} and {most:.6g}: subtract an offset or scale them first", stacklevel=4)
 
 
 def _kept(samples):
@@ -220,8 +263,10 @@ def _kept(samples):
     samples = numpy.asarray(samples)
     if samples.dtype != wanted:
         made = numpy.empty(samples.shape, wanted)
-        with numpy.errstate(over="ignore"):  # what float32 cannot hold is infinite, and said
+        with numpy.errstate(over="ignore", under="ignore", invalid="ignore"):
             for part, to in zip(samples, made):
                 to[...] = part
+            if wanted == "float32":
+                _tell_of_loss(samples, made)
         samples = made
     return _finite(samples) if wanted == "float32" else samples

@@ -110,7 +110,7 @@ def replay(field: "Field", isovalue: Union[float, str], time: ArrayLike, positio
 
 
 def read_trace(path: _Path) -> Trace:
-    """A trace file (CSV) as a Trace, without layers and the number of contacts. Raises InputError."""
+    """A trace file (CSV) as a Trace. Its layers are those that occur in the file, numbered in its order. Raises InputError."""
     return Trace(**_palpate._read_trace(path))
 
 

@@ -100,9 +100,12 @@ class PosesWriter {
 
 /// Reads a trace back; columns are found by name, further ones are ignored, and none of the
 /// format's may be missing. NaN and infinity are read as they were written. Throws InputError.
-std::vector<TraceRow> read_trace(const std::filesystem::path& path);
+/// Columns of a tool and of layers are read if they exist, and `extras` describes them. Its layers
+/// are those that occur in the file: the nested ones, then the others as they come.
+std::vector<TraceRow> read_trace(const std::filesystem::path& path, TraceExtras* extras = nullptr);
 /// The same from text that errors call `name`.
-std::vector<TraceRow> parse_trace(std::string_view text, const std::string& name);
+std::vector<TraceRow> parse_trace(std::string_view text, const std::string& name,
+                                  TraceExtras* extras = nullptr);
 
 /// Positions of hand and proxy, point by point.
 struct ProxyPath {
