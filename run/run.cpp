@@ -106,6 +106,7 @@ Run::~Run() {
 
 void Run::start() {
     if (servo_) throw WrongState("a run starts once");
+    if (is_over_) throw WrongState("the run was stopped before it started: make another one");
     hold(std::move(device_));  // this thread may be another than the one that opened it
     launch(session_now());
 }
@@ -124,7 +125,7 @@ void Run::step() {
 }
 
 void Run::stop() {
-    is_over_ = servo_ != nullptr;
+    is_over_ = true;
     halt();
 }
 

@@ -251,7 +251,8 @@ std::string without_zeros(const std::string& number) {
     return (is_negative ? "-" : "") + number.substr(digits);
 }
 
-/// Throws Failure if numbers tell slices apart, but two files have the same: which one is the slice?
+/// Throws Failure if numbers tell slices apart, but two files have the same: which one is the
+/// slice?
 void check_twice(const std::vector<NamedFile>& files, bool is_counted) {
     std::map<std::vector<std::string>, std::string> names;  // by their numbers
     std::string twice;

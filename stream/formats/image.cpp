@@ -111,6 +111,7 @@ class Taking {
         const Image& image = image_;
         StoreInfo& info = volume_.info;
         const Roles roles = roles_of(image.axes, info.notes);
+        take_sides(roles);
         const ChunkedArray& finest = volume_.arrays[0];
         for (const ChunkedArray& array : volume_.arrays) {
             if (array.axes() != image.axes.size() || array.bytes.stored != finest.bytes.stored) {
@@ -177,6 +178,7 @@ class Taking {
         level.chunk = Index3::Ones();
         level.geometry.size = Index3::Ones();
         if (image.direction) level.geometry.direction = *image.direction;
+        if (sides_) level.geometry.direction = *sides_;
         for (Eigen::Index i = 0; i < 3; ++i) {
             if (roles.space[static_cast<std::size_t>(i)] < 0) continue;
             const auto a = static_cast<std::size_t>(roles.space[static_cast<std::size_t>(i)]);
@@ -193,7 +195,9 @@ class Taking {
             level.geometry.origin[i] = place.translation[a] * unit;
             if (place.scale[a] < 0) level.geometry.direction.col(i) *= -1;
         }
-        level.geometry.oriented = image.oriented;
+        // Along axes with sides translations are told, too.
+        if (sides_) level.geometry.origin = (*sides_ * level.geometry.origin).eval();
+        level.geometry.oriented = image.oriented || sides_;
         level.geometry.measured = measured;
         try {  // its lengths may yet be given by the caller
             check(level.geometry);
@@ -202,6 +206,23 @@ class Taking {
         }
         level.geometry = orthonormal(level.geometry);
         return level;
+    }
+
+    /// Of three axes that say to which side of the body they run.
+    void take_sides(const Roles& roles) {
+        if (image_.direction) return;
+        std::string sides;
+        for (const int axis : roles.space) {
+            if (axis >= 0) sides += image_.axes[static_cast<std::size_t>(axis)].side;
+        }
+        if (sides.empty()) return;
+        try {
+            sides_ = io::direction_from(sides);
+        } catch (const std::invalid_argument&) {
+            volume_.info.notes.emplace_back(
+                "the orientation of its axes was not used: that of x, y and z is needed, one of "
+                "left and right, one of anterior and posterior, one of inferior and superior");
+        }
     }
 
     /// The first one that is known; empty if none is.
@@ -267,6 +288,7 @@ class Taking {
     const Image& image_;
     const StoreOptions& options_;
     ChunkedVolume volume_;
+    std::optional<Mat3> sides_;  ///< directions of the axes, if they say their sides
 };
 
 }  // namespace

@@ -22,6 +22,8 @@ class BadMetadata : public std::runtime_error {
 struct ImageAxis {
     std::string name;  ///< "t", "c", "z", "y", "x"
     std::string unit;  ///< empty: none
+    /// The side of the body to which it runs: L, R, A, P, S, I; "?": another one; empty: none.
+    std::string side = {};
 };
 struct ImageLevel {
     std::string path;                        ///< of its array

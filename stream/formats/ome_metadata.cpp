@@ -85,6 +85,21 @@ const Json& system_of(const Json& image) {
     return named == systems.end() ? systems[0] : *named;
 }
 
+/// "L" for right-to-left: RFC-4 of OME-NGFF, https://ngff.openmicroscopy.org/rfc/4.
+std::string side_of(const Json& axis) {
+    static constexpr std::pair<std::string_view, std::string_view> sides[] = {
+        {"right-to-left", "L"},         {"left-to-right", "R"},
+        {"anterior-to-posterior", "P"}, {"posterior-to-anterior", "A"},
+        {"inferior-to-superior", "S"},  {"superior-to-inferior", "I"}};
+    const Json& orientation = member(axis, "orientation");
+    if (orientation.is_null()) return {};
+    const Json& value = orientation.is_object() ? member(orientation, "value") : orientation;
+    for (const auto& [name, side] : sides) {
+        if (value == name) return std::string(side);
+    }
+    return "?";
+}
+
 /// Version 0.4 and 0.5 give objects, earlier ones names or nothing (then t, c, z, y, x).
 std::vector<ImageAxis> axes_of(const Json& image) {
     std::vector<ImageAxis> axes;
@@ -105,7 +120,7 @@ std::vector<ImageAxis> axes_of(const Json& image) {
         std::string name = axis_name(axis.at("name"));
         if (member(axis, "type") == "time") name = "t";
         if (member(axis, "type") == "channel") name = "c";
-        axes.push_back({name, unit.is_string() ? unit.get<std::string>() : ""});
+        axes.push_back({name, unit.is_string() ? unit.get<std::string>() : "", side_of(axis)});
     }
     return axes;
 }

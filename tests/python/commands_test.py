@@ -115,7 +115,7 @@ def test_a_session_on_a_file_whose_name_is_no_text_continues_and_is_analysed(tmp
     assert table[0][0] == "file" and table[1][:2] == [str(path), "40"] and len(table[1]) == len(table[0])
 
 
-@pytest.mark.parametrize("setting, standard, fits", [("force.limit", 20, False), ("force.limit", 1, True), ("force.torque_limit", 1, False)])
+@pytest.mark.parametrize("setting, standard, fits", [("force.limit", 20, False), ("force.limit", 1, True)])
 def test_a_setting_that_the_device_cannot_render_is_refused_before_the_first_touch(tmp_path, setting, standard, fits):
     def touching():
         return trials.touching("synthetic:sphere:16x16x16", None, "simulated:hand=press", setting, 0.1, tmp_path, 2 * standard)

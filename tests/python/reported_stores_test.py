@@ -86,6 +86,33 @@ def test_a_scale_of_zero_is_refused_with_what_to_correct(tmp_path):
     refused_store(tmp_path / "a.zarr", "spacing", "correct its metadata")
 
 
+LPS = ("inferior-to-superior", "anterior-to-posterior", "right-to-left")
+
+
+@pytest.mark.parametrize("sides, scale, origin, direction", (
+    (LPS, (2, 1, 1), (30, 20, 10), (1, 1, 1)),
+    (("inferior-to-superior", "posterior-to-anterior", "left-to-right"), (2, 1, 1), (-30, -20, 10), (-1, -1, 1)),
+    (("superior-to-inferior", *LPS[1:]), (-2, 1, 1), (30, 20, -10), (1, 1, 1)),
+    (("inferior-to-superior", "dorsal-to-ventral", "right-to-left"), (2, 1, 1), None, None),
+    ((*LPS[:2], None), (2, 1, 1), None, None), (("right-to-left", *LPS[1:]), (2, 1, 1), None, None)))
+def test_axes_say_to_which_side_of_the_body_they_run(tmp_path, sides, scale, origin, direction):
+    group = zarr.open_group(str(tmp_path / "a.zarr"), mode="w")
+    group.create_dataset("0", data=ramp("u2"), chunks=(2, 4, 6))
+    axes = [{"name": name, "type": "space", "unit": "millimeter"} for name in "zyx"]
+    for axis, side in zip(axes, sides, strict=True):
+        if side:
+            axis["orientation"] = {"type": "anatomical", "value": side}
+    transform = [{"type": "scale", "scale": scale}, {"type": "translation", "translation": [10, 20, 30]}]
+    (tmp_path / "a.zarr/.zattrs").write_text(json.dumps(
+        {"multiscales": [{"version": "0.4", "axes": axes, "datasets": [{"path": "0", "coordinateTransformations": transform}]}]}))
+    store = palpate.open_store(tmp_path / "a.zarr")
+    geometry = store.levels[0]
+    assert geometry.oriented == (origin is not None)
+    assert any("orientation of its axes was not used" in note for note in store.notes) == (origin is None)
+    assert numpy.array_equal(geometry.origin, origin or (30, 20, 10))
+    assert numpy.array_equal(geometry.direction, numpy.diag(direction or (1, 1, 1)))
+
+
 # HDF5 and TIFF ----------------------------------------------------------------------------------------
 
 

@@ -7,13 +7,15 @@
 #include <QPushButton>
 #include <QSplitter>
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "apps/viewer/model/probe_route.hpp"
 #include "apps/viewer/model/sample_block.hpp"
 #include "apps/viewer/panel/layout.hpp"
+#include "apps/viewer/scene/cut.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/slices/slice_pane.hpp"
-#include "palpate/proxy.hpp"
 
 namespace palpate::viewer {
 
@@ -55,10 +57,12 @@ Views::Views(MakePainter make_painter, QWidget* parent)
         connect(pane, &SlicePane::point_pointed_at, this, &Views::point_pointed_at);
     }
     connect(scene_, &Scene::probe_dragged, this, &Views::probe_dragged);
-    connect(scene_, &Scene::point_chosen, this,
-            [this](const Vec3& at) { Q_EMIT point_chosen(on_surface(at)); });
-    connect(scene_, &Scene::point_pointed_at, this,
-            [this](const Vec3& at) { Q_EMIT point_pointed_at(on_surface(at)); });
+    connect(scene_, &Scene::point_chosen, this, [this](const Vec3& seen) {
+        if (const auto at = on_surface(seen)) Q_EMIT point_chosen(*at);
+    });
+    connect(scene_, &Scene::point_pointed_at, this, [this](const Vec3& seen) {
+        if (const auto at = on_surface(seen)) Q_EMIT point_pointed_at(*at);
+    });
     arrange(Arrangement::beside);
     missing_->setStyleSheet(
         "QPushButton { background-color: #ffb000; color: black; border-radius: 4px; "
@@ -87,12 +91,31 @@ void Views::place_missing(int top) {
     missing_->move(0, &pane == scene_ ? top : pane.height() - missing_->height() - letters);
 }
 
-/// The picture is coarser than the touched surface.
-Vec3 Views::on_surface(const Vec3& seen) const {
-    const Vec3 near =
-        1.5 * field_->geometry().spacing.maxCoeff() * axes_of(scene_->camera()).towards_viewer;
-    const RayHit hit = cast_ray(*field_, shown_.isovalue, seen + near, seen - near);
-    return hit.hit && hit.point != seen + near ? hit.point : seen;
+/// The picture may be much coarser than the surfaces: of those that are drawn, the point in front
+/// of them all that is nearest to what is seen. Nothing where they are only in the picture. Other
+/// things that are drawn, and what a cut has opened, are where they are seen.
+std::optional<Vec3> Views::on_surface(const Vec3& seen) const {
+    const Look look = scene_look(shown_.look, shown_.layers);
+    const Geometry& geometry = field_->geometry();
+    const Vec3 towards = axes_of(scene_->camera()).towards_viewer;
+    const auto cuts = planes_of(look, geometry);
+    std::vector<double> levels;
+    if (look.surface) levels.push_back(shown_.isovalue);
+    if (shown_.pressed) levels.push_back(*shown_.pressed);
+    for (const SeenSurface& one : look.surfaces) {
+        if (one.shown) levels.push_back(one.level);
+    }
+    const auto depth_off = [&](const Vec3& at) { return std::abs((at - seen).dot(towards)); };
+    std::optional<Vec3> nearest;
+    for (const double level : levels) {
+        const auto met = surface_under(*field_, level, seen, towards, cuts);
+        if (met && (!nearest || depth_off(*met) < depth_off(*nearest))) nearest = met;
+    }
+    const bool has_others = look.volume || look.slices ||
+                            (shown_.overlay && look.overlay.shown && look.overlay.surface);
+    if (!has_others && (nearest || cuts.empty())) return nearest;
+    const double near = 1.5 * geometry.spacing.maxCoeff();
+    return nearest && depth_off(*nearest) <= near ? nearest : seen;
 }
 
 /// Whether this press follows a double click at once, at the same place, as the third or fourth

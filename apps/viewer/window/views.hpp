@@ -83,7 +83,7 @@ class Views : public QWidget {
     bool follows_double_click(const QMouseEvent& press);
     void choose_crosshair(const Vec3& physical);
     void restore_crosshair();
-    Vec3 on_surface(const Vec3& seen) const;
+    std::optional<Vec3> on_surface(const Vec3& seen) const;
     void order_panes();
     void show_panes();
 

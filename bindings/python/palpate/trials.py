@@ -351,10 +351,9 @@ def touching(volume: _Path, level: Union[float, str, None], device: str, name: s
         setup = palpate.Setup(isovalue=level, device=device)
         put(setup.render, name, value)
         run = palpate.Run(loaded, setup)
-        force, limits = setup.render.force, run.device.limits
-        for asked, most in ((force.limit, limits.maximum_force), (force.torque_limit, limits.maximum_torque)):
-            if asked == value and asked > most:
-                raise ValueError(f"{name} = {value:g}: the device renders at most {most:g}")
+        asked, most = setup.render.force.limit, run.device.limits.maximum_force
+        if asked == value and asked > most:
+            raise ValueError(f"{name} = {value:g}: the device renders at most {most:g}")
         return run, setup.render.stiffness or 0
 
     def touched_for(run):

@@ -73,8 +73,9 @@ class Run {
     /// other data, and before start().
     void step();
     double period() const { return period_; }  ///< [s] of its ticks; from start() on
-    /// Forces go to zero and the servo ends permanently. Waits until the device has sent the zero,
-    /// but at most half a second if the device hangs. The last snapshot and report remain.
+    /// Forces go to zero and the servo ends permanently, or never starts. Waits until the device
+    /// has sent the zero, but at most half a second if the device hangs. The last snapshot and
+    /// report remain.
     void stop();
     /// After stop(): that the device has not got the zero, so that its force may still be on.
     /// Empty once it has.

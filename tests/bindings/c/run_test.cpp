@@ -96,6 +96,14 @@ TEST_F(CRun, stopping_returns_when_a_slow_device_has_the_zero) {
     EXPECT_NE(std::string(palpate_last_error()).find("stopped for good"), std::string::npos);
 }
 
+TEST_F(CRun, a_stop_that_comes_before_the_start_holds) {
+    const palpate_own_device own = device_of(hand_);
+    ASSERT_EQ(create(&own), PALPATE_OK) << palpate_last_error();
+    EXPECT_EQ(palpate_run_stop(run_), PALPATE_OK);
+    EXPECT_EQ(palpate_run_start(run_), PALPATE_WRONG_STATE);
+    EXPECT_EQ(hand_.force, 0);
+}
+
 TEST_F(CRun, stopping_waits_for_no_callback_that_asks_for_the_run) {
     start(device_of(hand_));
     EXPECT_TRUE(comes_true([&] { return hand_.force > 0.5; }));

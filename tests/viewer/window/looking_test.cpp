@@ -208,6 +208,26 @@ TEST_F(DrawnLooking, a_length_on_the_surface_in_the_scene_and_escape_gives_up) {
     EXPECT_TRUE(window_->measuring().measurements().empty());
 }
 
+TEST_F(Looking, a_point_of_a_coarse_picture_is_measured_on_the_exact_surface) {
+    feel("synthetic:sphere:48x48x48");
+    wait_until_settled();
+    Scene& scene = window_->views().scene();
+    const Field& field = window_->live()->field();
+    const Vec3 middle = physical_centre(field.geometry());
+    const Vec3 towards = axes_of(scene.camera()).towards_viewer;
+    const Vec3 aside = axes_of(scene.camera()).right;
+    press(Qt::Key_M);
+    Q_EMIT scene.point_chosen(middle + 23 * towards);
+    Q_EMIT scene.point_chosen(middle + 23 * towards + 23.5 * aside);  // only in the picture
+    EXPECT_TRUE(window_->measuring().measuring());
+    Q_EMIT scene.point_chosen(middle + 5 * towards + 4 * aside);
+    ASSERT_EQ(window_->measuring().measurements().size(), 1U);
+    for (const Vec3& p : window_->measuring().measurements()[0].points) {
+        EXPECT_NEAR(value_at(field, p), window_->live()->isovalue(), 1e-6 * field.range());
+        EXPECT_GT((p - middle).dot(towards), 0) << "the side that is seen";
+    }
+}
+
 TEST_F(Looking, a_segmentation_lies_over_slices_and_scene_with_its_names_and_colours) {
     feel("synthetic:sphere:48x48x48");
     write_segmentation(scratch_.path() / "ball.seg.nrrd");
