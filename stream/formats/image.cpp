@@ -195,7 +195,7 @@ class Taking {
             level.geometry.origin[i] = place.translation[a] * unit;
             if (place.scale[a] < 0) level.geometry.direction.col(i) *= -1;
         }
-        // Along axes with sides translations are told, too.
+        // RFC-4 gives translations along the same axes.
         if (sides_) level.geometry.origin = (*sides_ * level.geometry.origin).eval();
         level.geometry.oriented = image.oriented || sides_;
         level.geometry.measured = measured;
@@ -208,7 +208,7 @@ class Taking {
         return level;
     }
 
-    /// Of three axes that say to which side of the body they run.
+    /// Takes the directions of axes that say to which side of the body they run.
     void take_sides(const Roles& roles) {
         if (image_.direction) return;
         std::string sides;

@@ -4,10 +4,10 @@ import os
 import signal
 import subprocess
 import sys
-import time
 
 import palpate
 import pytest
+from live_test import until
 
 SCENE = palpate.scene("sphere:16x16x16")
 FIELD = palpate.Field(SCENE.volume)
@@ -24,13 +24,6 @@ class Still:
 
     def read(self):
         return palpate.DeviceReading(position=self.position, status="ready")
-
-
-def until(is_true):
-    end = time.monotonic() + 20
-    while not is_true():
-        assert time.monotonic() < end
-        time.sleep(0.01)
 
 
 def servo(device, **render):
@@ -115,7 +108,7 @@ while True:
         try:
             until(lambda: told.exists() and told.read_bytes().strip() and float(told.read_bytes()) > 0.1)
             child.send_signal(getattr(signal, sent))
-            assert child.wait(20) == -getattr(signal, sent)
+            assert child.wait() == -getattr(signal, sent)
         finally:
             child.kill()
     assert float(told.read_bytes()) == 0
